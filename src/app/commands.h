@@ -12,6 +12,7 @@
 #include "formats/scenario/scenario.h"
 #include "run/film.h"
 #include "run/snapshot_files.h"
+#include "run/summary.h"
 #include "sim/session/run_hooks.h"
 
 namespace sandlot::app {
@@ -56,6 +57,14 @@ struct RunOptions {
   int at_a_time = 0;             ///< of those; 0: as many as the machine has processors
 };
 int run(const RunOptions& options);
+/// One run, with its server and the programs that it starts. Prints warnings and, where asked for, progress.
+/// @param outside  out: paths of the programs that run outside this process, "cyan1/player"; null: not asked
+Result<Summary> run_once(const RunOptions& options, bool shows_progress,
+                         std::vector<std::string>* outside = nullptr);
+
+struct MatchSpec;
+/// Plays two teams' software against each other; app/match.h.
+int match(const MatchSpec& spec);
 
 struct ReplayOptions {
   std::string file;     ///< recording

@@ -32,6 +32,7 @@ struct CommandLine {
 // running.cpp
 void add_run(CommandLine& line);
 void add_demo(CommandLine& line);
+void add_match(CommandLine& line);
 void add_console(CommandLine& line);
 // drawing.cpp
 void add_render(CommandLine& line);

@@ -3,6 +3,7 @@
 
 #include "app/demos.h"
 #include "app/flags.h"
+#include "app/match.h"
 #include "app/options/options.h"
 #include "app/options/shared.h"
 #include "base/text.h"
@@ -196,6 +197,39 @@ void add_demo(CommandLine& line) {
     if (!file) return void(line.result = complain(file.error()));
     flags.options.spec.file = *file;
     line.result = run(flags.options);
+  });
+}
+
+void add_match(CommandLine& line) {
+  RunFlags& flags = line.keep<RunFlags>();
+  MatchSpec& spec = line.keep<MatchSpec>();
+  CLI::App* const verb = line.app.add_subcommand("match",
+                                                 "Play two teams of robot soccer against each other");
+  verb->add_option("first", spec.teams[0], "Folder of the team that begins at negative x, with a team.yaml")
+      ->required();
+  verb->add_option("second", spec.teams[1], "Folder of the other team")->required();
+  verb->add_option("--level", spec.sense, "Level of the robots' senses")
+      ->check(CLI::IsMember({"image", "objects", "world"}));
+  verb->add_option("--drive", spec.drive, "Level of the robots' drives")
+      ->check(CLI::IsMember({"ideal", "contact", "roller"}));
+  verb->add_option("--physics", spec.engine, "Engine: planar knows no lobs and no rollers")
+      ->check(CLI::IsMember({"rigid", "planar"}));
+  verb->add_option("--size", spec.size, "Size of the field in metres")
+      ->check(CLI::IsMember({"22x14", "18x12", "12x8"}));
+  verb->add_flag("--swap", spec.swap, "Exchange the sides");
+  flags.add_to(*verb);
+  verb->get_option("--duration")
+      ->description("Time of play in both halves together, such as '4 min'; the scenario's if left out");
+  verb->footer(
+      "Example: sandlot match teams/passing teams/run_and_kick --duration '4 min' --record match.mcap\n"
+      "         sandlot match teams/passing my_team --port 8765      and open the page it names");
+  verb->callback([&line, &flags, &spec] {
+    if (Status status = flags.finish(); !status) return void(line.result = complain(status.error()));
+    spec.run = flags.options;
+    // The length of the game, not of the run: the clock may stand.
+    if (const auto played_s = std::exchange(spec.run.spec.duration_s, std::nullopt))
+      spec.half_s = *played_s / 2;
+    line.result = match(spec);
   });
 }
 

@@ -99,10 +99,7 @@ Status serve(const RunOptions& options, const RunParts& parts, std::optional<Ser
 
 }  // namespace
 
-int run(const RunOptions& options) {
-  if (options.repeat) return run_again(options);
-  if (!options.store.empty())
-    return complain({"--store: it keeps the results of repeated runs", "add --repeat 50"});
+Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::vector<std::string>* outside) {
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.starts_clients = true;
@@ -132,6 +129,11 @@ int run(const RunOptions& options) {
           SL_ASSIGN(refbox, ServedRefbox::start(options.refbox, parts.session));
         }
         release();
+        if (outside)
+          parts.session.simulation().for_each_outside(
+              [&](const SimulationParts::ProgramEntry& entry, const Outside&) {
+                outside->push_back(entry.path);
+              });
         if (options.verbose)
           for (const sandlot::Finding& each : lint_file(options.spec.file, options.spec.overrides,
                                                         options.spec.paths, parts.session.simulation()))
@@ -141,7 +143,7 @@ int run(const RunOptions& options) {
       .keep_going =
           [&](const Simulation& simulation) {
             if (served) served->count_viewers();
-            progress.update(simulation);
+            if (shows_progress) progress.update(simulation);
             return !interrupted();
           },
       .on_end =
@@ -152,10 +154,18 @@ int run(const RunOptions& options) {
             if (options.serve) summary.server = ended;
             summary.clients = served->clients();
           }};
-  const auto summary = sandlot::run(spec, callbacks);
+  auto summary = sandlot::run(spec, callbacks);
   release();
+  if (summary && shows_progress) progress.clear();
+  return summary;
+}
+
+int run(const RunOptions& options) {
+  if (options.repeat) return run_again(options);
+  if (!options.store.empty())
+    return complain({"--store: it keeps the results of repeated runs", "add --repeat 50"});
+  const auto summary = run_once(options, true);
   if (!summary) return complain(summary.error());
-  progress.clear();
   std::fputs(options.json ? as_json_text(*summary).c_str() : as_text(*summary).c_str(), stdout);
   for (const std::string& error : summary->errors) std::fprintf(stderr, "error: %s\n", error.c_str());
   return summary->errors.empty() ? exit_ok : exit_failed;

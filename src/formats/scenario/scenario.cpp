@@ -564,6 +564,7 @@ Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<
   SL_TRY(apply_overrides(root, overrides));
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));
+  SL_TRY(add_team_robots(root, file, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
   SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
   scenario.unused_vars = std::move(unused_vars);

@@ -95,6 +95,13 @@ Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<
 /// own), the scenario's for what came from `--set`.
 std::string base_folder(const Scenario& scenario, const Place& place);
 
+/// What the team.yaml of a folder says of the team's software.
+struct TeamSoftware {
+  std::string file, name, description;
+};
+/// Errors   there is no such file; it is not a team's.
+Result<TeamSoftware> read_team_software(const std::string& folder);
+
 /// Reads a pose as scenario files write it: `[x, y, yaw]`, `[x, y, z, roll, pitch, yaw]` or a map of these keys.
 Result<Pose> read_pose(const Node& node, const std::string& path);
 

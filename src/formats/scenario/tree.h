@@ -22,6 +22,12 @@ Status apply_overrides(Node& root, std::span<const Override> overrides);
 /// @param unused  out: entries of `vars` that no ${name} uses, in file order
 Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place>>& unused);
 
+/// Adds the robots that the software of teams brings to `robots`; team_software.cpp.
+/// @param file    the scenario's
+/// @param unused  entries of `vars` that nothing has used: those that the teams use are taken out
+Status add_team_robots(Node& root, const std::string& file,
+                       std::vector<std::pair<std::string, Place>>& unused);
+
 /// Checks and takes over the zones of the ground; zones.cpp.
 Status read_zones(const Node& root, const std::vector<scenario_spec::Zone>& keys,
                   std::vector<model::SurfaceZone>& out, Diagnostics& diagnostics);

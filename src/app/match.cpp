@@ -1,0 +1,130 @@
+#include "app/match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/demos.h"
+#include "base/text.h"
+#include "formats/scenario/scenario.h"
+
+namespace sandlot::app {
+namespace {
+
+constexpr std::array<const char*, 2> sides{"cyan", "magenta"};
+constexpr int walk_over_goals = 3;
+constexpr double most_missed = 0.5;
+
+/// YAML of a text, whatever is in it.
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+/// Whether `path` names a robot of a team or what is in one: "cyan3", "cyan3/player".
+bool is_of(std::string_view path, std::string_view side) {
+  if (!path.starts_with(side)) return false;
+  std::string_view rest = path.substr(side.size());
+  const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
+  rest.remove_prefix(digits);
+  return (digits > 0 || rest.empty()) && (rest.empty() || rest.front() == '/');
+}
+
+/// Why the team on a side has lost by rule; "": it has not.
+std::string fault_of(const char* side, const std::vector<std::string>& outside, const Summary& summary) {
+  for (const std::string& error : summary.errors)
+    for (const char* const mark : {"'", "\"", " "})
+      if (const auto at = error.find(mark + std::string(side)); at != std::string::npos) {
+        const std::string_view from = std::string_view(error).substr(at + 1);
+        if (is_of(from.substr(0, from.find_first_of("'\": ,;")), side))
+          return "its software failed: " + error;
+      }
+  std::size_t programs = 0, silent = 0;
+  std::uint64_t steps = 0, misses = 0;
+  for (const std::string& path : outside) {
+    if (!is_of(path, side)) continue;
+    ++programs;
+    bool answered = false;
+    for (const ClientSummary& client : summary.clients) {
+      if (client.drives.empty() || !(path == client.drives || path.starts_with(client.drives + "/")))
+        continue;
+      steps += client.steps;
+      misses += client.misses;
+      answered = answered || client.steps > client.misses;
+    }
+    silent += !answered;
+  }
+  if (programs == 0) return "";
+  if (silent == programs) return "none of its programs answered";
+  if (steps > 0 && static_cast<double>(misses) > most_missed * static_cast<double>(steps))
+    return fmt::format("its programs missed {} of {} steps", misses, steps);
+  return "";
+}
+
+}  // namespace
+
+Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
+  Match out;
+  RunOptions run = spec.run;
+  SL_ASSIGN(run.spec.file, demo_file("match"));
+  std::vector<formats::Override> overrides;
+  for (std::size_t i = 0; i < spec.teams.size(); ++i) {
+    const std::string folder = std::filesystem::absolute(spec.teams[i]).lexically_normal().string();
+    SL_ASSIGN(const formats::TeamSoftware software, formats::read_team_software(folder));
+    out.result.folders[i] = spec.teams[i];
+    out.result.names[i] = software.name;
+    const std::string side = sides[spec.swap ? 1 - i : i];
+    overrides.push_back({"vars." + side, quoted(folder)});
+    overrides.push_back({"vars." + side + "_title", quoted(software.name)});
+  }
+  const auto choose = [&](const char* variable, const std::string& value) {
+    if (!value.empty()) overrides.push_back({std::string("vars.") + variable, value});
+  };
+  choose("drive", spec.drive);
+  choose("sense", spec.sense);
+  choose("engine", spec.engine);
+  choose("size", spec.size);
+  if (spec.half_s) choose("half", number_text(*spec.half_s));
+  run.spec.overrides.insert(run.spec.overrides.begin(), overrides.begin(), overrides.end());
+
+  std::vector<std::string> outside;
+  SL_ASSIGN(out.summary, run_once(run, shows_progress, &outside));
+  const Summary& summary = out.summary;
+  MatchResult& result = out.result;
+  result.swapped = spec.swap;
+  result.seed = summary.seed;
+  result.sim_s = summary.sim_s;
+  result.wall_s = summary.wall_s;
+  result.state_hash = summary.state_hash;
+  result.recording = run.spec.record_file;
+  result.ended = summary.stopped.find("game") != std::string::npos;
+  std::array<std::string, 2> faults;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const char* const side = sides[spec.swap ? 1 - i : i];
+    for (const auto& judged : summary.criteria)
+      if (judged.name == side && judged.value.value) result.goals[i] = static_cast<int>(*judged.value.value);
+    faults[i] = fault_of(side, outside, summary);
+  }
+  const auto lose = [&](std::size_t loser) {
+    std::array<int, 2>& goals = result.goals;
+    const std::size_t other = 1 - loser;
+    result.walk_over = result.names[loser] + " loses by rule: " + faults[loser];
+    if (goals[other] - goals[loser] >= walk_over_goals) return;
+    goals[loser] = 0;
+    goals[other] = walk_over_goals;
+  };
+  if (!faults[0].empty() && !faults[1].empty()) {
+    result.goals = {};
+    result.walk_over = fmt::format("neither has won: {}: {}; {}: {}", result.names[0], faults[0],
+                                   result.names[1], faults[1]);
+  } else if (!faults[0].empty()) {
+    lose(0);
+  } else if (!faults[1].empty()) {
+    lose(1);
+  }
+  if (result.goals[0] != result.goals[1])
+    result.winner = result.names[result.goals[0] > result.goals[1] ? 0 : 1];
+  return out;
+}
+
+}  // namespace sandlot::app
