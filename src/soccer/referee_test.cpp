@@ -104,7 +104,7 @@ TEST(SoccerSetPieces, DistancesAreHeld) {
     input.robots = match.robots;
     const Violation found = violation({match.rules, match.field, match.state, input}, false);
     EXPECT_EQ(static_cast<bool>(found.who), place.wrong) << place.what;
-    if (place.wrong) EXPECT_EQ(found.who, place.who) << place.what;
+    if (place.wrong) { EXPECT_EQ(found.who, place.who) << place.what; }
   }
 }
 
@@ -206,7 +206,7 @@ TEST(SoccerBallOut, GoesOnByWhereItLeftAndWhoTouchedItLast) {
     EXPECT_EQ(match.words.front(), "STOP") << row.what;
     const bool goal = row.piece == SetPiece::kickoff;
     EXPECT_EQ(match.state.score[0] + match.state.score[1], goal ? 1u : 0u) << row.what;
-    if (goal) EXPECT_EQ(match.state.score[row.team == 0 ? 1 : 0], 1u) << row.what;
+    if (goal) { EXPECT_EQ(match.state.score[row.team == 0 ? 1 : 0], 1u) << row.what; }
   }
 }
 
@@ -287,7 +287,7 @@ TEST(SoccerPlay, TheTakerMayNotTouchTwice) {
     match.touch(player0);
     match.step();
     EXPECT_EQ(match.laws(), by_other ? Laws{} : Laws{"double_touch"});
-    if (!by_other) EXPECT_EQ(match.state.team, 1);
+    if (!by_other) { EXPECT_EQ(match.state.team, 1); }
   }
 }
 
@@ -302,7 +302,7 @@ TEST(SoccerPlay, ARobotKeepsTheBallForThreeMetresAtMost) {
       if (match.state.phase != Phase::running) break;
     }
     EXPECT_EQ(match.laws(), way_m > 3 ? Laws{"dribble"} : Laws{}) << way_m;
-    if (way_m > 3) EXPECT_EQ(match.state.team, 0);
+    if (way_m > 3) { EXPECT_EQ(match.state.team, 0); }
   }
 }
 
@@ -335,7 +335,7 @@ TEST(SoccerPlay, PenaltyAreasAreNotCrowded) {
     if (many > 1) match.put(mate1, 9.5, -1.5);
     match.run(match.rules.penalty_area_s + 0.3);
     EXPECT_EQ(match.laws(), many > 1 ? Laws{"penalty_area"} : Laws{});
-    if (many > 1) EXPECT_EQ(match.state.spot_m, (Vec3{7.4, 3.5, 0}));
+    if (many > 1) { EXPECT_EQ(match.state.spot_m, (Vec3{7.4, 3.5, 0})); }
   }
 }
 
@@ -355,7 +355,7 @@ TEST(SoccerPlay, PushingIsAFoulOfTheOneThatCameFaster) {
     match.blows.push_back({player0, player1, {each.impulse_Ns, 0, 0}});
     match.step();
     EXPECT_EQ(match.laws(), each.foul ? Laws{"pushing"} : Laws{}) << each.impulse_Ns << " " << each.own_mps;
-    if (each.foul) EXPECT_EQ(match.state.team, 1);
+    if (each.foul) { EXPECT_EQ(match.state.team, 1); }
   }
 }
 
