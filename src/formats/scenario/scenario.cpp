@@ -562,9 +562,11 @@ Result<Scenario> parse_scenario(std::string_view text, const std::string& file,
 Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<const Override> overrides,
                                   Diagnostics& diagnostics) {
   SL_TRY(apply_overrides(root, overrides));
+  const Node* const written = root.is_map() ? root.find("vars") : nullptr;
+  const Node vars = written ? *written : Node();
   std::vector<std::pair<std::string, Place>> unused_vars;
   SL_TRY(substitute_variables(root, unused_vars));
-  SL_TRY(add_team_robots(root, file, unused_vars));
+  SL_TRY(add_team_robots(root, vars, file, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
   SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
   scenario.unused_vars = std::move(unused_vars);

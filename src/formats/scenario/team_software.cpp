@@ -54,8 +54,8 @@ Result<Read> read_team(const std::string& folder) {
 
 class TeamRobots {
  public:
-  TeamRobots(Node& root, const Node& team, Team keys, std::string path)
-      : root_(root), team_(team), keys_(std::move(keys)), path_(std::move(path)) {}
+  TeamRobots(Node& root, const Node& outer, const Node& team, Team keys, std::string path)
+      : root_(root), outer_(outer), team_(team), keys_(std::move(keys)), path_(std::move(path)) {}
 
   /// @param used  out: names of the scenario's variables that the team uses
   Status add(const Read& software, std::vector<std::string>& used) {
@@ -93,8 +93,7 @@ class TeamRobots {
     Node robot = keys_.robot.is_map() ? keys_.robot : Node::map(place);
     merge(robot, mine);
     Node vars = Node::map(place);
-    const Node* const outer = root_.find("vars");
-    if (outer && outer->is_map()) merge(vars, *outer);
+    if (outer_.is_map()) merge(vars, outer_);
     if (software.keys.vars.is_map()) merge(vars, software.keys.vars);
     if (keys_.vars.is_map()) merge(vars, keys_.vars);
     vars.set("number", Node::scalar(std::to_string(number), place));
@@ -105,11 +104,10 @@ class TeamRobots {
     holder.set("robot", std::move(robot));
     std::vector<std::pair<std::string, Place>> unused;
     SL_TRY(substitute_variables(holder, unused));
-    if (outer && outer->is_map())
-      for (const Node::Entry& entry : outer->entries())
-        if (std::none_of(unused.begin(), unused.end(),
-                         [&](const auto& each) { return each.first == entry.key; }))
-          used.push_back(entry.key);
+    for (const Node::Entry& entry : outer_.entries())
+      if (std::none_of(unused.begin(), unused.end(),
+                       [&](const auto& each) { return each.first == entry.key; }))
+        used.push_back(entry.key);
 
     Node whole = std::move(*holder.find("robot"));
     whole.set_place(place);
@@ -124,6 +122,7 @@ class TeamRobots {
   }
 
   Node& root_;
+  const Node& outer_;  ///< variables of the scenario
   const Node& team_;
   Team keys_;
   std::string path_;
@@ -136,7 +135,7 @@ Result<TeamSoftware> read_team_software(const std::string& folder) {
   return TeamSoftware{software.file, software.keys.name, software.keys.description};
 }
 
-Status add_team_robots(Node& root, const std::string& file,
+Status add_team_robots(Node& root, const Node& vars, const std::string& file,
                        std::vector<std::pair<std::string, Place>>& unused) {
   const Node* const found = root.is_map() ? root.find("teams") : nullptr;
   if (!found || !found->is_sequence()) return {};
@@ -159,7 +158,7 @@ Status add_team_robots(Node& root, const std::string& file,
       return std::move(software.error());
     }
     std::vector<std::string> used;
-    SL_TRY(TeamRobots(root, team, std::move(keys), path).add(*software, used));
+    SL_TRY(TeamRobots(root, vars, team, std::move(keys), path).add(*software, used));
     std::erase_if(unused, [&](const auto& each) {
       return std::find(used.begin(), used.end(), each.first) != used.end();
     });

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr const char* scenario = R"(version: 1
-vars: {side: foxes, wheels: 4, unused: 1, level: ideal}
+vars: {side: foxes, wheels: 4, unused: 1, how: slow, levels: {slow: ideal, fast: contact}, level: "${levels[how]}"}
 teams:
   - name: red
     software: ${side}
@@ -84,6 +84,14 @@ TEST_F(TeamSoftwareFile, AddsItsRobotsToTheScenario) {
   EXPECT_EQ(base_folder(*read_it, programs[0].place), folder.file("foxes"));
   ASSERT_EQ(read_it->unused_vars.size(), 1u) << "level is used by the team's robots";
   EXPECT_EQ(read_it->unused_vars[0].first, "unused");
+}
+
+/// A variable of the team goes before the scenario's of that name, also where another one of the scenario chooses by it.
+TEST_F(TeamSoftwareFile, ChoosesByItsOwnVariables) {
+  write(foxes);
+  const auto fast = read({{"teams[0].vars.how", "fast"}});
+  ASSERT_TRUE(fast) << fast.error().text();
+  EXPECT_EQ(fast->robots[1].devices.find("drive")->find("level")->text(), "contact");
 }
 
 TEST_F(TeamSoftwareFile, MayBringFewerRobots) {

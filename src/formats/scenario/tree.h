@@ -24,8 +24,9 @@ Status substitute_variables(Node& root, std::vector<std::pair<std::string, Place
 
 /// Adds the robots that the software of teams brings to `robots`; team_software.cpp.
 /// @param file    the scenario's
+/// @param vars    the scenario's variables as they are written: those of a team may choose another way in them
 /// @param unused  entries of `vars` that nothing has used: those that the teams use are taken out
-Status add_team_robots(Node& root, const std::string& file,
+Status add_team_robots(Node& root, const Node& vars, const std::string& file,
                        std::vector<std::pair<std::string, Place>>& unused);
 
 /// Checks and takes over the zones of the ground; zones.cpp.
