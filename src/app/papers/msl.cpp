@@ -1,5 +1,5 @@
 /// msl: "A simulation environment for middle-size robots with multi-level abstraction". Its section 5.1: how erratic the speed of a
-/// simulation is (Fig. 4), and how far interval timers miss that are set by an estimate of the speed.
+/// simulation is (Fig. 4), how far interval timers miss that are set by an estimate of the speed; and the speed of each level.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "app/papers/msl_levels.h"
 #include "app/papers/papers.h"
 #include "app/papers/step_timers.h"
 #include "draw/plot.h"
@@ -256,6 +257,7 @@ Status make_msl(const ReproduceContext& context, ReportPage& page) {
                     "plans again at each step "
                     "misses by less than a step, whatever its length.",
                     100 * planned.errors.front(), 100 * planned.errors.back())}});
+  if (context.traces.empty()) SL_TRY(add_level_table(context, page));
   return {};
 }
 
