@@ -126,6 +126,8 @@ set_tests_properties(tutorials PROPERTIES LABELS slow TIMEOUT 600
 # Clients in Python, as docs/clients.md says.
 add_test(NAME client_clock COMMAND Python3::Interpreter tests/clock_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(client_clock PROPERTIES LABELS unit)
+add_test(NAME soccer_team COMMAND Python3::Interpreter tests/soccer_team_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(soccer_team PROPERTIES LABELS unit)
 add_test(NAME clients COMMAND Python3::Interpreter tests/clients_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(clients PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
