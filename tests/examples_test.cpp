@@ -21,6 +21,7 @@ TEST(Examples, EachFolderStandsAlone) {
     fs::permissions(scratch.path, fs::perms(0755));  // programs that a run starts are not root
     for (const auto& file : fs::directory_iterator(scratch.path)) {
       if (file.path().extension() != ".yaml") continue;
+      if (folder.path().filename() == "soccer_team") continue;  // a team is no scenario: soccer_team_test.py
       ++checked;
       std::ifstream in(file.path());
       std::string text, line;

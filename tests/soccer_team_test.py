@@ -51,6 +51,7 @@ class SoccerTeam(unittest.TestCase):
         one = player.Player("cyan2")
         one.learn(state("running"))
         one.look(1.0, [{"label": "ball", "bearing": 0, "range": 3}])
+        one.look(9.0, [{"label": "goal_magenta", "bearing": 0, "range": 9}])
         self.assertEqual(one.decide(9.0)[0], (0.0, 0.0, 1.5))
 
 
