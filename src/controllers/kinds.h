@@ -18,6 +18,7 @@
   controller(selforg)                   \
   controller(sequence)                  \
   controller(sine)                      \
+  controller(soccer_player)             \
   controller(wander)                    \
   controller(waypoints)
 // clang-format on

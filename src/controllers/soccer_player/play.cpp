@@ -1,0 +1,311 @@
+#include "controllers/soccer_player/play.h"
+
+#include <algorithm>
+
+#include "base/math.h"
+#include "control/steering.h"
+#include "controllers/soccer_player/tracking.h"
+
+namespace sandlot::controllers::soccer_player {
+namespace {
+
+double heading(Vec3 v) { return math::atan2(v.y, v.x); }
+
+/// Speed with which a ball must be kicked to arrive after a way with 1.5 m/s: a kicked ball slides and loses two fifths until it rolls.
+double pass_speed(const Scene& scene, double way_m) {
+  return std::clamp(std::sqrt(2.25 + 2 * rolling_mps2 * way_m) / 0.6, scene.keys->pass_speed_mps, 8.0);
+}
+
+void aim(Memory& memory, Aim kind, Vec3 at, double tolerance_rad, double speed_mps, double until_s) {
+  memory.aim = kind;
+  memory.at = at;
+  memory.tolerance_rad = tolerance_rad;
+  memory.speed_mps = speed_mps;
+  memory.until_s = until_s;
+}
+
+/// The team-mate to pass to; none: null.
+const Mate* receiver(const Scene& scene, double least_gain_m) {
+  const Mate* best = nullptr;
+  double most = 0;
+  for (const Mate& mate : scene.mates) {
+    if (mate.number == scene.keys->keeper) continue;
+    const Vec3 to = mate.at + 0.4 * mate.velocity;
+    const double way = norm(to - scene.ball), gain = to.x - scene.ball.x;
+    if (way < 1.8 || way > 10 || gain < least_gain_m) continue;
+    const double room = room_beside(scene, scene.ball, to);
+    if (room < 0.55) continue;
+    const double value = 1 + 0.3 * (gain - least_gain_m) + std::min(room, 1.5) - 0.1 * way;
+    if (value > most) most = value, best = &mate;
+  }
+  return best;
+}
+
+void choose_aim(const Scene& scene, Memory& memory) {
+  const double until = scene.now_s + 0.4;
+  const Vec3 goal{scene.goal_x(), 0, 0};
+  const double way = norm(goal - scene.ball);
+  const Shot shot = best_shot(scene, scene.ball);
+  const auto shoot = [&](Aim kind) {
+    const double room = std::clamp(shot.room_m, 0.15, 0.5 * scene.field.goal_width_m);
+    aim(memory, kind, shot.at, std::clamp(0.6 * room / std::max(0.5, way), 0.03, 0.2),
+        scene.keys->shot_speed_mps, until);
+  };
+  if (scene.keys->play == Play::run_and_kick)
+    return aim(memory, Aim::shot, goal, std::clamp(0.8 / std::max(0.5, way), 0.05, 0.3),
+               scene.keys->shot_speed_mps, until);
+  const double carried = scene.holds ? norm(scene.me - memory.held_at) : 0;
+  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5);
+  if (way < scene.keys->shot_range_m && shot.room_m >= scene.style.shot_clearance_m) return shoot(Aim::shot);
+  if (scene.style.passes || must)
+    if (const Mate* const mate = receiver(scene, must ? -2 : scene.style.pass_gain_m)) {
+      const Vec3 to = mate->at + 0.4 * mate->velocity;
+      return aim(memory, Aim::pass, to, 0.07, pass_speed(scene, norm(to - scene.ball)), until);
+    }
+  if (scene.has_handler && !must) {
+    // Of five directions towards the goal the one with the most room for three metres.
+    Vec3 best = goal;
+    double most = -1e9;
+    for (int k = -2; k <= 2; ++k) {
+      const auto [s, c] = math::sincos(0.45 * k);
+      const Vec3 to = scene.ball + 3.0 * turned(normalised(goal - scene.ball), s, c);
+      if (std::abs(to.y) > 0.5 * scene.field.width_m - 0.4) continue;
+      const double value = std::min(1.2, room_beside(scene, scene.ball, to)) - 0.15 * std::abs(k);
+      if (value > most) most = value, best = to;
+    }
+    return aim(memory, Aim::dribble, best, 0, 0, until);
+  }
+  shoot(way < 1.4 * scene.keys->shot_range_m ? Aim::shot : Aim::clearance);
+}
+
+/// Gets the ball and plays it to where the memory aims.
+Intent play_ball(const Scene& scene, Memory& memory) {
+  const Vec3 ball = scene.ball, off = flat(ball - scene.me);
+  const double distance = norm(off);
+  const Vec3 direction = normalised(memory.at - ball);
+  Intent out;
+  out.speed_mps = scene.keys->speed_mps;
+  out.handler = scene.has_handler && distance < 1.2;
+  out.yaw_rad = heading(direction);
+  out.kick = memory.aim != Aim::dribble;
+  if (scene.holds) {
+    out.keeps_clear = memory.aim == Aim::dribble;
+    if (memory.aim == Aim::dribble) {
+      out.name = "dribble";
+      out.target = scene.me + 1.5 * normalised(memory.at - scene.me);
+      out.speed_mps = 1.5;
+    } else {
+      out.name = memory.aim == Aim::pass ? "pass" : memory.aim == Aim::shot ? "shoot" : "clear";
+      out.target = scene.me + 0.15 * direction;
+      out.speed_mps = 0.5;
+    }
+    return out;
+  }
+  const double speed = norm(scene.ball_velocity);
+  const double along = dot(off, direction), across = std::abs(off.x * direction.y - off.y * direction.x);
+  const bool right_behind = along > 0.15 && across < 0.06 + 0.3 * std::max(0.0, along - 0.32);
+  if (speed > 0.7 && distance > 0.6) {  // meets it where it comes
+    const Meeting meeting = meet(scene, scene.me);
+    out.name = "intercept";
+    // Not in its way from the front: the place beside which it passes is met head on.
+    out.target = meeting.at - scene.keys->front_m * normalised(ball - meeting.at, direction) +
+                 0.6 * scene.keys->front_m * normalised(ball - meeting.at, direction);
+    if (dot(scene.ball_velocity, direction) > 0.3 * speed) out.target = meeting.at - 0.45 * direction;
+    else out.yaw_rad = heading(off);
+    return out;
+  }
+  if (scene.has_handler) {
+    out.name = "get";
+    out.yaw_rad = heading(off);
+    out.target = ball - 0.2 * normalised(off);
+    out.moves_on = scene.ball_velocity;
+    out.keeps_clear = distance > 0.8;
+    out.speed_mps = distance < 1 ? 0.6 + distance : out.speed_mps;
+    return out;
+  }
+  if (right_behind) {
+    out.name = memory.aim == Aim::pass ? "pass" : "shoot";
+    out.target = ball + 0.3 * direction;
+    out.moves_on = scene.ball_velocity;
+    out.keeps_clear = false;
+    out.speed_mps = std::min(out.speed_mps, 1.0 + distance);
+    return out;
+  }
+  out.name = "go behind";
+  const Vec3 behind = ball - 0.62 * direction;
+  const steering::Disc disc{ball, 0.5};
+  out.target = steering::way_around(scene.me, behind, {&disc, along > 0.45 ? 0u : 1u});
+  out.moves_on = scene.ball_velocity;
+  if (distance > 1.5) out.yaw_rad = heading(off);
+  return out;
+}
+
+Intent stand_at(const Scene& scene, const char* name, Vec3 place, double speed_mps, double ball_room_m) {
+  Intent out;
+  out.name = name;
+  out.target = place;
+  out.speed_mps = speed_mps;
+  out.yaw_rad = heading(scene.ball - scene.me);
+  out.ball_room_m = ball_room_m;
+  return out;
+}
+
+Intent keep(const Scene& scene, Memory& memory, bool may_leave) {
+  const double gx = scene.goal_x(), half = 0.5 * scene.field.goal_width_m;
+  const Vec3 goal{-gx, 0, 0}, ball = scene.ball;
+  if (!scene.ball_known) return stand_at(scene, "keep", {0.4 - gx, 0, 0}, scene.keys->speed_mps, 0);
+  // A shot: where it crosses the line on which the keeper stands.
+  const double line_x = 0.45 - gx, v = scene.ball_velocity.x;
+  if (v < -0.6 && ball.x > line_x) {
+    const double t = (line_x - ball.x) / v;
+    const double y = ball.y + scene.ball_velocity.y * t;
+    if (t < 3 && std::abs(y) < half + 0.4) {
+      Intent out = stand_at(scene, "save", {line_x, std::clamp(y, -half, half), 0}, 5, 0);
+      out.keeps_clear = false;
+      out.handler = scene.has_handler;
+      // It brakes late: a shot gives no time to come to rest.
+      out.moves_on = {0, std::clamp(2.5 * (out.target.y - scene.me.y), -2.0, 2.0), 0};
+      return out;
+    }
+  }
+  const bool near = std::abs(ball.y) < 0.5 * scene.field.penalty_area_width_m && ball.x < 2.2 - gx &&
+                    ball.x > -gx - 0.1;
+  double sooner = 1e9;
+  for (const Mate& mate : scene.mates) sooner = std::min(sooner, mate.cost_s);
+  const double mine = meet(scene, scene.me).after_s;
+  if (may_leave &&
+      (scene.holds || (near && norm(scene.ball_velocity) < 1.5 && (mine < sooner || ball.x < 0.9 - gx)))) {
+    // Away: to a mate, else to the side that is free.
+    if (const Mate* const mate = receiver(scene, 1.5); mate != nullptr && scene.now_s > memory.until_s)
+      aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - ball)), scene.now_s + 0.4);
+    else if (scene.now_s > memory.until_s || memory.aim == Aim::none || memory.aim == Aim::dribble)
+      aim(memory, Aim::clearance, Vec3{0, ball.y > 0 ? 4.0 : -4.0, 0}, 0.4, scene.keys->shot_speed_mps,
+          scene.now_s + 0.4);
+    return play_ball(scene, memory);
+  }
+  const Vec3 to_ball = normalised(ball - goal);
+  Vec3 place = goal + 0.75 * to_ball;
+  place.x = std::max(place.x, 0.4 - gx);
+  place.y = std::clamp(place.y, 0.15 - half, half - 0.15);
+  return stand_at(scene, "keep", place, scene.keys->speed_mps, 0);
+}
+
+/// Own set piece: what the taker does.
+Intent take(const Scene& scene, Memory& memory) {
+  const bool running = scene.game.phase == Phase::running;
+  if (memory.aim == Aim::none || memory.aim == Aim::dribble || scene.now_s > memory.until_s) {
+    if (scene.game.piece == Piece::penalty || scene.keys->play == Play::run_and_kick) {
+      const Shot shot = best_shot(scene, scene.ball);
+      aim(memory, Aim::shot, shot.at, 0.06, scene.keys->shot_speed_mps, scene.now_s + 0.5);
+    } else if (const Mate* const mate = receiver(scene, -6)) {
+      aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - scene.ball)),
+          scene.now_s + 0.8);
+    } else {
+      const Shot shot = best_shot(scene, scene.ball);
+      aim(memory, Aim::clearance, shot.at, 0.1, scene.keys->shot_speed_mps, scene.now_s + 0.5);
+    }
+  }
+  if (running) return play_ball(scene, memory);
+  Vec3 place = scene.ball - 0.7 * normalised(memory.at - scene.ball);
+  if (scene.game.piece == Piece::kickoff) {
+    place.x = std::min(place.x, -0.3);
+    if (norm(place - scene.ball) < 0.5) place.y += place.y > 0 ? 0.4 : -0.4;
+  }
+  Intent out = stand_at(scene, "take", place, scene.keys->speed_mps, 0.45);
+  out.yaw_rad = heading(memory.at - scene.ball);
+  return out;
+}
+
+}  // namespace
+
+double room_beside(const Scene& scene, Vec3 from, Vec3 to) {
+  const Vec3 way = flat(to - from);
+  const double length = norm(way);
+  double room = 2;
+  if (length < 1e-6) return room;
+  const Vec3 u = (1 / length) * way;
+  for (const Moving& each : scene.opponents) {
+    const Vec3 off = flat(each.at - from);
+    const double along = dot(off, u);
+    if (along < 0.1 || along > length + 0.3) continue;
+    room = std::min(room, std::abs(off.x * u.y - off.y * u.x));
+  }
+  return room;
+}
+
+Shot best_shot(const Scene& scene, Vec3 from) {
+  const double most_y = 0.5 * scene.field.goal_width_m - 0.25;
+  Shot best{{scene.goal_x() + 0.2, 0, 0}, -1};
+  double most = -1e9;
+  for (int k = -3; k <= 3; ++k) {
+    const Vec3 at{scene.goal_x() + 0.2, most_y * k / 3, 0};
+    const double room = room_beside(scene, from, at) - 0.25;
+    const double value = std::min(0.7, room) - 0.03 * std::abs(k);
+    if (value > most) most = value, best = {at, room};
+  }
+  return best;
+}
+
+Intent decide(const Scene& scene, const Task& task, Memory& memory) {
+  const Game& game = scene.game;
+  const bool ours = game.whose == Whose::ours, piece = game.piece != Piece::none && !scene.open;
+  if (game.phase == Phase::stopped || game.out) {
+    Intent out = stand_at(scene, "stop", scene.me, 0.5, 0);
+    return out;
+  }
+  if (task.role == Role::keeper) {
+    const bool may = scene.open;
+    return keep(scene, memory, may);
+  }
+  if (piece) {
+    if (ours && task.role == Role::attacker && game.piece != Piece::dropped_ball) return take(scene, memory);
+    double room = ours ? 2.3 : 3.3;
+    if (game.piece == Piece::dropped_ball) room = 1.4;
+    Vec3 place = task.target;
+    if (task.role == Role::attacker)
+      place = scene.ball + room * normalised(Vec3{-scene.goal_x(), 0, 0} - scene.ball);
+    if (ours && task.place == 1) {  // to receive
+      const double side = scene.ball.y > 0 ? -1 : 1;
+      place = {scene.ball.x + (game.piece == Piece::kickoff ? -1.2 : 0.8), scene.ball.y + 2.6 * side, 0};
+      if (game.piece == Piece::corner) place.x = scene.ball.x - 2.6;
+    }
+    if (game.piece == Piece::penalty) {
+      const double back = std::min(scene.ball.x, scene.goal_x() - 3.6) - room;
+      const double fore = std::max(scene.ball.x, 3.6 - scene.goal_x()) + room;
+      place.x = ours ? std::min(place.x, back) : std::max(place.x, fore);
+    }
+    place = legal(scene, place, task, room);
+    if (game.piece == Piece::kickoff) place.x = std::min(place.x, -0.4);
+    return stand_at(scene, "wait", place, scene.keys->speed_mps, room - 0.15);
+  }
+  if (!scene.ball_known) {
+    Intent out = stand_at(
+        scene, "search", legal(scene, task.role == Role::attacker ? scene.me : task.target, task, 0), 1.5, 0);
+    out.yaw_rad = scene.yaw_rad + 1;
+    return out;
+  }
+  if (task.role == Role::attacker) {
+    const double gx = scene.goal_x(), edge = gx - scene.field.goal_area_depth_m;
+    const bool shut = std::abs(scene.ball.x) > edge + 0.05 &&
+                      std::abs(scene.ball.y) < 0.5 * scene.field.goal_area_width_m + 0.05;
+    if (shut && !scene.holds)  // the ball is in a goal area: that is for goalkeepers
+      return stand_at(scene, "await", legal(scene, scene.ball, task, 0), scene.keys->speed_mps, 0);
+    if (scene.now_s > memory.until_s || memory.aim == Aim::none ||
+        (memory.aim == Aim::dribble && !scene.has_handler))
+      choose_aim(scene, memory);
+    Intent out = play_ball(scene, memory);
+    // The body stays out of the goal areas.
+    if (std::abs(out.target.y) < 0.5 * scene.field.goal_area_width_m + 0.3)
+      out.target.x = std::clamp(out.target.x, 0.3 - edge, edge - 0.3);
+    out.target.x = std::clamp(out.target.x, -gx - 0.3, gx + 0.3);
+    out.target.y = std::clamp(out.target.y, -0.5 * scene.field.width_m - 0.5,
+                              0.5 * scene.field.width_m + 0.5);
+    return out;
+  }
+  if (!scene.style.places && task.place == 0) return stand_at(scene, "stand", scene.me, 0.5, 0);
+  return stand_at(scene, "position",
+                  legal(scene, task.target, task, task.place == 2 && scene.style.pressers > 0 ? 0.9 : 1.5),
+                  scene.keys->speed_mps, 0.6);
+}
+
+}  // namespace sandlot::controllers::soccer_player

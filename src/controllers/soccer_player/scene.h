@@ -1,0 +1,80 @@
+#pragma once
+/// The scene from which a player decides, and what it decides.
+///
+/// Frame    A: that of the field, turned so that the own goal is at negative x. All places and velocities are in A.
+#include "controllers/soccer_player/beliefs.h"
+#include "controllers/soccer_player/keys.h"
+#include "controllers/soccer_player/motion.h"
+
+namespace sandlot::controllers::soccer_player {
+
+struct Scene {
+  const Keys* keys = nullptr;
+  soccer::Dimensions field;
+  Style style{};
+  double now_s = 0;
+  std::int32_t number = 0;
+  Vec3 me, velocity;
+  double yaw_rad = 0;
+  Vec3 ball, ball_velocity;  ///< as the team knows it
+  bool ball_known = false, holds = false, has_handler = false;
+  Game game;                ///< its spot is in A, too
+  bool open = true;         ///< the ball may be played freely
+  std::vector<Mate> mates;  ///< those heard within a second
+  std::vector<Moving> opponents;
+
+  double goal_x() const { return 0.5 * field.length_m; }
+  bool is_keeper() const { return number == keys->keeper; }
+};
+
+enum class Aim : std::uint8_t { none, shot, pass, dribble, clearance };
+inline std::span<const EnumName<Aim>> enum_names(Aim) {
+  static constexpr EnumName<Aim> names[] = {{"none", Aim::none},
+                                            {"shot", Aim::shot},
+                                            {"pass", Aim::pass},
+                                            {"dribble", Aim::dribble},
+                                            {"clearance", Aim::clearance}};
+  return names;
+}
+
+/// What a player remembers of what it decided. Places are in F.
+struct Memory {
+  Role role = Role::none;
+  Aim aim = Aim::none;
+  Vec3 at, held_at;
+  double until_s = -1e9, held_s = -1e9, kicked_s = -1e9;
+  double tolerance_rad = 0.1, speed_mps = 0;
+  bool held = false, taken = false;
+  std::uint64_t kicks = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"role", "", "Role."}, s.role);
+    visit(Field{"aim", "", "Aim with the ball."}, s.aim);
+    visit(Field{"at", "m", "Place that it aims at."}, s.at);
+    visit(Field{"held_at", "m", "Place where it got the ball."}, s.held_at);
+    visit(Field{"until", "s", "Time until which it keeps its aim."}, s.until_s);
+    visit(Field{"held_since", "s", "Time when it got the ball."}, s.held_s);
+    visit(Field{"kicked", "s", "Time of its latest kick."}, s.kicked_s);
+    visit(Field{"tolerance", "rad", "Largest error of the heading for a kick."}, s.tolerance_rad);
+    visit(Field{"speed", "m/s", "Speed of the ball to kick it with."}, s.speed_mps);
+    visit(Field{"held", "", "Whether it held the ball in its latest step."}, s.held);
+    visit(Field{"taken", "",
+                "Whether its latest kick was a set piece, so that it may not touch the ball again."},
+          s.taken);
+    visit(Field{"kicks", "1", "Kicks so far."}, s.kicks);
+  }
+};
+
+/// What to do in this step, in A.
+struct Intent {
+  const char* name = "stand";
+  Vec3 target, moves_on;
+  double yaw_rad = 0;
+  double speed_mps = 0;     ///< at most
+  double ball_room_m = 0;   ///< distance to keep from the ball on the way; 0: none
+  bool keeps_clear = true;  ///< of robots
+  bool kick = false;        ///< as soon as the ball lies right
+  bool handler = false;
+};
+
+}  // namespace sandlot::controllers::soccer_player
