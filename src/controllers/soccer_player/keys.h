@@ -29,8 +29,8 @@ struct Keys {
   std::array<double, 3> start{0, 0, 0};
   bool placed = false;
   double speed_mps = 2.8, turn_speed_radps = 5, acceleration_mps2 = 2.2;
-  double shot_speed_mps = 9, pass_speed_mps = 4.5, shot_range_m = 9;
-  double kick_reach_m = 0.37, kick_width_m = 0.11, front_m = 0.31;
+  double shot_speed_mps = 11, pass_speed_mps = 4.5, shot_range_m = 10;
+  double kick_reach_m = 0.42, kick_width_m = 0.11, front_m = 0.335;
   double radio_rate_hz = 10, report_rate_hz = 10;
   perception::FinderSpec vision;
 
@@ -103,9 +103,9 @@ struct Style {
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {0.28, 0.5, 1.5, 0.45, 0, true, true};
-    case Play::dribbling: return {0.35, 4, 2.5, 0.45, 0, false, true};
-    case Play::pressing: return {0.2, 2.5, 1.5, 0.6, 1, true, true};
+    case Play::passing: return {0.3, 1.5, 2.6, 0.45, 0, true, true};
+    case Play::dribbling: return {0.3, 4, 2.6, 0.45, 0, false, true};
+    case Play::pressing: return {0.3, 4, 2.6, 0.5, 1, true, true};
     case Play::run_and_kick: break;
   }
   return {0, 1e9, 0.5, 0.3, 0, false, false};

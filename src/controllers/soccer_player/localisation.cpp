@@ -20,11 +20,11 @@ void move_by_odometry(Self& self, Vec3 at_m, double yaw_rad, Vec3 twist_mps, dou
     const auto [s, c] = math::sincos(self.yaw_rad);
     self.at += turned(way_B, s, c);
     self.yaw_rad = math::wrap_angle(self.yaw_rad + turn);
-    // Errors of 5 % of the way, 3 % of the turn, and of the heading across the way.
-    const double d2 = dot(way_B, way_B), grown = 0.0025 * d2 + self.var_yaw * d2 + 1e-7;
+    // Wheels slip: errors of 15 % of the way, 30 % of the turn, and of the heading across the way.
+    const double d2 = dot(way_B, way_B), grown = 0.0225 * d2 + self.var_yaw * d2 + 1e-7;
     self.var_xx += grown;
     self.var_yy += grown;
-    self.var_yaw += 9e-4 * turn * turn + 1e-4 * d2 + 1e-8;
+    self.var_yaw += 0.09 * turn * turn + 1e-4 * d2 + 1e-6;
   }
   const auto [s, c] = math::sincos(self.yaw_rad);
   self.velocity = turned(twist_mps, s, c);

@@ -55,9 +55,13 @@ void choose_aim(const Scene& scene, Memory& memory) {
     return aim(memory, Aim::shot, goal, std::clamp(0.8 / std::max(0.5, way), 0.05, 0.3),
                scene.keys->shot_speed_mps, until);
   const double carried = scene.holds ? norm(scene.me - memory.held_at) : 0;
-  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5);
+  double nearest = 9;
+  for (const Moving& each : scene.opponents) nearest = std::min(nearest, norm(each.at - scene.ball));
+  // Who is pressed gives the ball on.
+  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5 ||
+                                    (nearest < 0.6 && scene.now_s - memory.held_s > 0.6));
   if (way < scene.keys->shot_range_m && shot.room_m >= scene.style.shot_clearance_m) return shoot(Aim::shot);
-  if (scene.style.passes || must)
+  if ((scene.style.passes && nearest < 2) || must)
     if (const Mate* const mate = receiver(scene, must ? -2 : scene.style.pass_gain_m)) {
       const Vec3 to = mate->at + 0.4 * mate->velocity;
       return aim(memory, Aim::pass, to, 0.07, pass_speed(scene, norm(to - scene.ball)), until);
@@ -93,7 +97,7 @@ Intent play_ball(const Scene& scene, Memory& memory) {
     if (memory.aim == Aim::dribble) {
       out.name = "dribble";
       out.target = scene.me + 1.5 * normalised(memory.at - scene.me);
-      out.speed_mps = 1.5;
+      out.speed_mps = 2.2;
     } else {
       out.name = memory.aim == Aim::pass ? "pass" : memory.aim == Aim::shot ? "shoot" : "clear";
       out.target = scene.me + 0.15 * direction;

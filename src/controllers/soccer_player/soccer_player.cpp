@@ -329,7 +329,7 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   const Vec3 target = flip(intent.target);
   const double yaw = state.game.positive ? intent.yaw_rad : intent.yaw_rad + math::pi;
   const Limits limits{std::min(intent.speed_mps, spec.speed_mps),
-                      holds_ ? std::min(2.5, spec.turn_speed_radps) : spec.turn_speed_radps,
+                      holds_ ? std::min(4.0, spec.turn_speed_radps) : spec.turn_speed_radps,
                       spec.acceleration_mps2};
   discs_.clear();
   const auto add = [&](Vec3 at, Vec3 velocity, double radius) {
@@ -345,9 +345,15 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   }
   if (intent.ball_room_m > 0 && scene_.ball_known) add(flip(scene_.ball), {}, intent.ball_room_m);
   const Vec3 wanted = velocity_to(state.self.at, target, flip(intent.moves_on), limits);
-  const Vec3 velocity = around(state.self.at, wanted, discs_);
-  cmd.set(drive_, drive(state.self, velocity, yaw, limits, spec.holonomic));
-  state.speed_mps = norm(velocity);
+  // Wheels slip when speeds change too fast.
+  const Vec3 change = around(state.self.at, wanted, discs_) - state.ordered_mps;
+  const double most = 1.3 * spec.acceleration_mps2 * dt_s_, size = norm(change);
+  state.ordered_mps += size > most ? (most / size) * change : change;
+  msg::Twist twist = drive(state.self, state.ordered_mps, yaw, limits, spec.holonomic);
+  const double turn = 10 * dt_s_;
+  twist.angular.z = std::clamp(twist.angular.z, state.ordered_radps - turn, state.ordered_radps + turn);
+  state.ordered_radps = twist.angular.z;
+  cmd.set(drive_, twist);
   const bool may_kick = intent.kick && (scene_.open || (scene_.game.phase == Phase::running &&
                                                         scene_.game.whose == Whose::ours));
   if (may_kick) kick(obs, cmd);
@@ -410,6 +416,7 @@ void SoccerPlayer::report(const Observation& obs, const Task& task, const Intent
 void SoccerPlayer::step(const Observation& obs, Command& cmd) {
   now_s_ = obs.now().s();
   const double dt = state.begun ? std::clamp(now_s_ - state.stepped_s, 0.0, 1.0) : 0;
+  dt_s_ = std::max(dt, 1e-3);
   sense_self(obs);
   state.begun = true;
   state.stepped_s = now_s_;

@@ -31,7 +31,8 @@ struct State {
   Memory memory;
   double stepped_s = 0, sent_s = -1e9, reported_s = -1e9;
   double cost_s = 50;
-  double speed_mps = 0;  ///< ordered
+  Vec3 ordered_mps;  ///< velocity in F
+  double ordered_radps = 0;
   bool begun = false;
 
   static void fields(auto& s, auto&& visit) {
@@ -45,7 +46,8 @@ struct State {
     visit(Field{"sent", "s", "Time of the latest packet."}, s.sent_s);
     visit(Field{"reported", "s", "Time of the latest report."}, s.reported_s);
     visit(Field{"cost", "s", "Time that it takes to get the ball."}, s.cost_s);
-    visit(Field{"speed", "m/s", "Speed that was ordered."}, s.speed_mps);
+    visit(Field{"ordered", "m/s", "Velocity in the field that was ordered."}, s.ordered_mps);
+    visit(Field{"ordered_rate", "rad/s", "Turning rate that was ordered."}, s.ordered_radps);
     visit(Field{"begun", "", "Whether it has made a step."}, s.begun);
   }
 };
@@ -106,7 +108,7 @@ struct SoccerPlayer {
 
   // Scratch of a step, and what follows from the specification and the camera.
   double now_s_ = 0;
-  double sin_ = 0, cos_ = 1;
+  double dt_s_ = 0, sin_ = 0, cos_ = 1;
   bool holds_ = false;
   Scene scene_;
   std::vector<Moving> discs_;
