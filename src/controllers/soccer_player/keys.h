@@ -18,6 +18,22 @@ inline std::span<const EnumName<Play>> enum_names(Play) {
   return names;
 }
 
+/// Ball and robots of the league in pictures: an orange ball, shells of cyan and magenta whose lower edge is 0.19 m high.
+inline perception::FinderSpec usual_vision() {
+  perception::FinderSpec vision;
+  for (const double hue_rad : {3.35, 5.69}) {
+    perception::Target robot;
+    robot.label = "robot";
+    robot.form = perception::Form::standing;
+    robot.colour.hue_rad = hue_rad;
+    robot.size_m = 0.44;
+    robot.foot_m = 0.19;
+    robot.depth_m = 0.22;
+    vision.targets.push_back(robot);
+  }
+  return vision;
+}
+
 struct Keys {
   std::string drive = "drive", eye = "eye", laser = "laser", compass = "compass", kicker = "kicker",
               chip = "chip", handler = "handler", radio = "radio", referee = "referee", battery = "battery";
@@ -32,7 +48,7 @@ struct Keys {
   double shot_speed_mps = 11, pass_speed_mps = 4.5, shot_range_m = 10;
   double kick_reach_m = 0.42, kick_width_m = 0.11, front_m = 0.335;
   double radio_rate_hz = 10, report_rate_hz = 10;
-  perception::FinderSpec vision;
+  perception::FinderSpec vision = usual_vision();
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned tunable = Field::tunable;
@@ -97,18 +113,19 @@ struct Style {
   double shot_clearance_m;  ///< least room beside opponents in front of a shot
   double pass_gain_m;       ///< least gain along the field of a pass
   double dribble_m;         ///< longest way with the ball
+  double pressed_m;         ///< an opponent nearer to the ball than that leaves no time
   double line;              ///< depth of the defence: 0 at the goal, 1 at the ball
   int pressers;             ///< players that go for a ball of the opponents beside the attacker
   bool passes, places;      ///< whether it passes; whether the others take places
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {0.3, 1.5, 2.6, 0.45, 0, true, true};
-    case Play::dribbling: return {0.3, 4, 2.6, 0.45, 0, false, true};
-    case Play::pressing: return {0.3, 4, 2.6, 0.5, 1, true, true};
+    case Play::passing: return {0.3, 3, 2.6, 0.7, 0.45, 0, true, true};
+    case Play::dribbling: return {0.3, 4, 2.6, 0.7, 0.45, 0, false, true};
+    case Play::pressing: return {0.3, 4, 2.6, 0.7, 0.5, 1, true, true};
     case Play::run_and_kick: break;
   }
-  return {0, 1e9, 0.5, 0.3, 0, false, false};
+  return {0, 1e9, 0.5, 0, 0.3, 0, false, false};
 }
 
 }  // namespace sandlot::controllers::soccer_player

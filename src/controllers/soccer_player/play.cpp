@@ -57,9 +57,14 @@ void choose_aim(const Scene& scene, Memory& memory) {
   const double carried = scene.holds ? norm(scene.me - memory.held_at) : 0;
   double nearest = 9;
   for (const Moving& each : scene.opponents) nearest = std::min(nearest, norm(each.at - scene.ball));
-  // Who is pressed gives the ball on.
-  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5 ||
-                                    (nearest < 0.6 && scene.now_s - memory.held_s > 0.6));
+  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5);
+  // Who is pressed has no time to aim: away with it, past the opponent.
+  if (nearest < scene.style.pressed_m) {
+    shoot(way < 1.4 * scene.keys->shot_range_m ? Aim::shot : Aim::clearance);
+    memory.tolerance_rad = std::clamp(0.8 / std::max(0.5, way), 0.06, 0.3);
+    memory.until_s = scene.now_s + 0.2;
+    return;
+  }
   if (way < scene.keys->shot_range_m && shot.room_m >= scene.style.shot_clearance_m) return shoot(Aim::shot);
   if ((scene.style.passes && nearest < 2) || must)
     if (const Mate* const mate = receiver(scene, must ? -2 : scene.style.pass_gain_m)) {

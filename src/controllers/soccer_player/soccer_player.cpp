@@ -7,6 +7,7 @@
 #include "controllers/soccer_player/localisation.h"
 #include "controllers/soccer_player/packet.h"
 #include "controllers/soccer_player/tracking.h"
+#include "perception/scan_match.h"
 
 namespace sandlot::controllers::soccer_player {
 namespace {
@@ -187,8 +188,16 @@ void SoccerPlayer::see_picture(const Observation& obs) {
     if (std::string_view(label(each)).substr(0, 4) == "goal") see(label(each), each.position_B, each.range_m);
     if (label(each) == "ball" && (ball == nullptr || each.confidence > ball->confidence)) ball = &each;
   }
-  for (const perception::Found& each : found_)
-    if (label(each) == "robot") see("robot", each.position_B, each.range_m);
+  // The nearest come first. What lies behind a robot in the same direction is its upper ring, taken for another one.
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    if (label(found_[i]) != "robot") continue;
+    const bool hidden = std::any_of(
+        found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(i), [&](const auto& nearer) {
+          return label(nearer) == "robot" &&
+                 std::abs(math::wrap_angle(nearer.bearing_rad - found_[i].bearing_rad)) < 0.06;
+        });
+    if (!hidden) see("robot", found_[i].position_B, found_[i].range_m);
+  }
   if (ball != nullptr) see("ball", ball->position_B, ball->range_m);
 }
 
@@ -213,6 +222,7 @@ void SoccerPlayer::scan(const Observation& obs) {
   const auto seen = obs.get(*ranges_);
   if (!seen.valid || !seen.fresh) return;
   const msg::LaserScan& m = seen.message;
+  if (now_s_ - state.matched_s >= 1) match_goals(m);
   const auto point = [&](std::size_t i) {
     const auto [s, c] = math::sincos(m.angle_min + static_cast<double>(i) * m.angle_increment);
     return m.ranges[i] * Vec3{c, s, 0};
@@ -227,6 +237,21 @@ void SoccerPlayer::scan(const Observation& obs) {
     }
     if (here && !open) begin = i, open = true;
   }
+}
+
+/// Corrects the place by the walls of the goals, which a laser meets.
+void SoccerPlayer::match_goals(const msg::LaserScan& scan) {
+  state.matched_s = now_s_;
+  const double x = 0.5 * field_.length_m, back = x + field_.goal_depth_m, y = 0.5 * field_.goal_width_m,
+               post = 0.125;
+  const perception::Wall walls[] = {{back, -y, back, y},    {x, y, back, y},       {x, -y, back, -y},
+                                    {x, y, x, y + post},    {x, -y, x, -y - post}, {-back, -y, -back, y},
+                                    {-x, y, -back, y},      {-x, -y, -back, -y},   {-x, y, -x, y + post},
+                                    {-x, -y, -x, -y - post}};
+  const Self& self = state.self;
+  const auto match = perception::match_scan(scan, X_BL_, walls, {self.at.x, self.at.y, self.yaw_rad}, 0.5);
+  if (!match.converged || match.points < 8 || match.rms_m > 0.1) return;
+  fix_place(state.self, {{match.pose.x, match.pose.y, 0}, 0.01, 0, 0.01});
 }
 
 void SoccerPlayer::hear(const Observation& obs) {

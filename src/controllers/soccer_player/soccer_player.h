@@ -29,7 +29,7 @@ struct State {
   std::vector<Obstacle> robots;
   Game game;
   Memory memory;
-  double stepped_s = 0, sent_s = -1e9, reported_s = -1e9;
+  double stepped_s = 0, sent_s = -1e9, reported_s = -1e9, matched_s = -1e9;
   double cost_s = 50;
   Vec3 ordered_mps;  ///< velocity in F
   double ordered_radps = 0;
@@ -44,6 +44,7 @@ struct State {
     visit(Field{"memory", "", "Decisions that are kept."}, s.memory);
     visit(Field{"stepped", "s", "Time of the latest step."}, s.stepped_s);
     visit(Field{"sent", "s", "Time of the latest packet."}, s.sent_s);
+    visit(Field{"matched", "s", "Time when a scan was held against the goals last."}, s.matched_s);
     visit(Field{"reported", "s", "Time of the latest report."}, s.reported_s);
     visit(Field{"cost", "s", "Time that it takes to get the ball."}, s.cost_s);
     visit(Field{"ordered", "m/s", "Velocity in the field that was ordered."}, s.ordered_mps);
@@ -68,6 +69,7 @@ struct SoccerPlayer {
   void see_objects(const Observation& obs);
   void see_picture(const Observation& obs);
   void scan(const Observation& obs);
+  void match_goals(const msg::LaserScan& scan);
   void see(std::string_view label, Vec3 at_B, double range_m);
   void see_other(Vec3 at_F);
   void hear(const Observation& obs);
