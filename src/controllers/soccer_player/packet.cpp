@@ -5,8 +5,8 @@
 namespace sandlot::controllers::soccer_player {
 namespace {
 
-constexpr std::uint8_t version = 1;
-constexpr std::size_t size = 6 + 10 * 2 + 3 * 2;
+constexpr std::uint8_t packet_version = 1;
+constexpr std::size_t packet_size = 6 + 10 * 2 + 3 * 2;
 
 void put16(std::vector<std::uint8_t>& out, std::uint16_t v) {
   out.push_back(static_cast<std::uint8_t>(v & 0xff));
@@ -46,7 +46,7 @@ void write_packet(std::vector<std::uint8_t>& out, const Mate& self, double now_s
   out.clear();
   out.push_back('S');
   out.push_back('P');
-  out.push_back(version);
+  out.push_back(packet_version);
   out.push_back(static_cast<std::uint8_t>(self.number));
   out.push_back(static_cast<std::uint8_t>(self.role));
   out.push_back(static_cast<std::uint8_t>((self.holds ? 1u : 0u) | (self.ball_known ? 2u : 0u)));
@@ -58,7 +58,8 @@ void write_packet(std::vector<std::uint8_t>& out, const Mate& self, double now_s
 }
 
 std::optional<Mate> read_packet(std::span<const std::uint8_t> bytes, double now_s) {
-  if (bytes.size() != size || bytes[0] != 'S' || bytes[1] != 'P' || bytes[2] != version) return {};
+  if (bytes.size() != packet_size || bytes[0] != 'S' || bytes[1] != 'P' || bytes[2] != packet_version)
+    return {};
   Reader in{bytes, 3};
   Mate mate;
   mate.number = in.byte();
