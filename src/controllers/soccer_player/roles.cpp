@@ -22,7 +22,7 @@ std::array<Vec3, 3> places(const Scene& scene) {
   const double gx = scene.goal_x(), wy = 0.5 * scene.field.width_m;
   const Vec3 ball = scene.ball, goal{-gx, 0, 0};
   const double side = ball.y > 0 ? -1 : 1;
-  Vec3 support{std::clamp(ball.x + (ball.x > 0.45 * gx ? -0.5 : 2.5), -0.5 * gx, gx - 3.0),
+  Vec3 support{std::clamp(ball.x + (ball.x > 0.45 * gx ? -0.5 : 2.5), -1.5, gx - 3.0),
                std::clamp(ball.y + 4.0 * side, 1.2 - wy, wy - 1.2), 0};
   Vec3 cover = goal + scene.style.line * (ball - goal);
   cover.x = std::max(cover.x, -gx + 1.3);

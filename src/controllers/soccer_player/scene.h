@@ -48,7 +48,7 @@ struct Memory {
   std::uint64_t kicks = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"role", "", "Role."}, s.role);
+    visit(Field{"role", "", "Present role."}, s.role);
     visit(Field{"aim", "", "Aim with the ball."}, s.aim);
     visit(Field{"at", "m", "Place that it aims at."}, s.at);
     visit(Field{"held_at", "m", "Place where it got the ball."}, s.held_at);
