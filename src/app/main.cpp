@@ -112,9 +112,9 @@ int sandlot::app::command(int argc, char** argv, const Hooks* hooks) {
   int result = exit_ok;
   CommandLine line{app, result, hooks};
   for (void (*const add)(CommandLine&) :
-       {add_run,  add_demo,   add_match,    add_console,   add_render, add_check,     add_info,
-        add_plot, add_replay, add_diff,     add_convert,   add_new,    add_calibrate, add_fit,
-        add_list, add_bench,  add_validate, add_reproduce, add_topic,  add_doctor})
+       {add_run,  add_demo, add_match,  add_tournament, add_console,   add_render, add_check,
+        add_info, add_plot, add_replay, add_diff,       add_convert,   add_new,    add_calibrate,
+        add_fit,  add_list, add_bench,  add_validate,   add_reproduce, add_topic,  add_doctor})
     add(line);
   const auto all = [](const CLI::App*) { return true; };
   for (CLI::App* const verb : app.get_subcommands(all)) {

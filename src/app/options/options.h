@@ -34,6 +34,8 @@ void add_run(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_match(CommandLine& line);
 void add_console(CommandLine& line);
+// tournament.cpp
+void add_tournament(CommandLine& line);
 // drawing.cpp
 void add_render(CommandLine& line);
 void add_plot(CommandLine& line);

@@ -188,7 +188,7 @@ class Round {
           if (!failed_) failed_ = std::move(row.error());
           return;
         }
-        if (on_game_) on_game_(*row);
+        if (on_game_ && *row) on_game_(**row);
         rows[i] = std::move(*row);
       }
     };
@@ -212,7 +212,8 @@ class Round {
     return !keep_going_ || keep_going_();
   }
 
-  Result<GameRow> one(const Match& match) {
+  /// Nothing: it may have been cut short.
+  Result<std::optional<GameRow>> one(const Match& match) {
     {
       const std::lock_guard lock(mutex_);
       SL_ASSIGN(const auto known, results_.find(spec_, match));
@@ -220,14 +221,15 @@ class Round {
         GameRow row = row_of(match, *known, true);
         std::error_code ignored;
         if (std::filesystem::exists(match.recording, ignored)) row.recording = match.recording;
-        return row;
+        return std::optional(row);
       }
     }
     auto result = play_(match);
+    if (keep_going_ && !keep_going_()) return std::optional<GameRow>();
     if (!result) return Error{match.name + ": " + result.error().text()};
     const std::lock_guard lock(mutex_);
     SL_TRY(results_.add(spec_, match, *result));
-    return row_of(match, *result, false);
+    return std::optional(row_of(match, *result, false));
   }
 
   const TournamentSpec& spec_;

@@ -157,7 +157,8 @@ struct TournamentSummary {
 };
 
 /// @param on_game     called after each game, also a stored one, by one thread at a time; may be empty
-/// @param keep_going  asked before each game, from several threads; false: what has been played counts
+/// @param keep_going  asked before and after each game, from several threads; false: no further game is begun, and the one that has just
+///                    been played may have been cut short and does not count
 /// Errors   of the schedule, two teams of one name, a store that cannot be read or written, the first error of a game. What had been played
 ///          by then is in the store.
 Result<TournamentSummary> play_tournament(const TournamentSpec& spec, const PlayGame& play,
