@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -20,6 +21,8 @@ using Points = std::vector<std::vector<double>>;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// Smallest singular value of the scaled Jacobian, relative to the largest, that differences of runs can resolve.
 constexpr double singular = 1e-6;
+/// Steps of differences that are tried, of the scaled parameters.
+constexpr std::array steps{1e-6, 1e-4, 1e-3, 1e-2, 5e-2};
 
 Status check(const std::vector<FitParameter>& parameters) {
   if (parameters.empty()) return Error{"a fit needs at least one parameter"};
@@ -74,6 +77,14 @@ class Search {
   int left() const { return options_.most_evaluations - out_.evaluations; }
   std::vector<std::optional<VectorXd>> at(const std::vector<VectorXd>& points);
   Status begin();
+  /// Points of a difference of one parameter.
+  struct Probe {
+    std::array<VectorXd, 2> points;
+    double step = 0;  ///< to the first point
+    bool central = false;
+  };
+  Probe probe(Index i, double step) const;
+  void choose_steps();
   bool jacobian();
   bool improve();
   std::vector<Index> moving(const VectorXd& gradient) const;
@@ -85,7 +96,8 @@ class Search {
   LeastSquares out_;
   VectorXd u_, r_;
   MatrixXd J_;  ///< of the point u_
-  double damping_ = 1e-3, difference_ = 1e-4;
+  VectorXd h_;  ///< steps of differences
+  double damping_ = 1e-3;
 };
 
 std::vector<std::optional<VectorXd>> Search::at(const std::vector<VectorXd>& points) {
@@ -135,20 +147,63 @@ Status Search::begin() {
   return {};
 }
 
-/// Forward differences, backward at the upper bound. False: no evaluations are left, or a column cannot be had.
+/// Points of a difference about u_: to both sides, or twice to one where a bound is near.
+Search::Probe Search::probe(Index i, double step) const {
+  Probe out{{u_, u_}, step, u_[i] - step >= 0 && u_[i] + step <= 1};
+  if (!out.central && u_[i] + 2 * step > 1) out.step = -step;
+  out.points[0][i] += out.step;
+  out.points[1][i] += out.central ? -out.step : 2 * out.step;
+  return out;
+}
+
+/// Chooses for each parameter the step of its differences: the one whose second difference is the smallest part of its first. Where steps
+/// are large that part is curvature; where they are small it is what residuals with jumps, as those of quantised sensors, do by chance.
+void Search::choose_steps() {
+  if (left() < count() * (2 * static_cast<Index>(steps.size()) + 2) + 1) return;
+  std::vector<VectorXd> points;
+  for (Index i = 0; i < count(); ++i)
+    for (const double step : steps)
+      for (const VectorXd& point : probe(i, step).points) points.push_back(point);
+  const auto found = at(points);
+  for (Index i = 0; i < count(); ++i) {
+    double best = unlimited;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const auto index = 2 * (static_cast<std::size_t>(i) * steps.size() + k);
+      const auto &one = found[index], &other = found[index + 1];
+      if (!one || !other) continue;
+      const bool central = probe(i, steps[k]).central;
+      const VectorXd first = central ? VectorXd((*one - *other) / 2) : VectorXd(*one - r_);
+      const VectorXd second = central ? VectorXd(*one + *other - 2 * r_) : VectorXd(*other - 2 * *one + r_);
+      if (!(first.norm() > 0) || !(second.norm() < best * first.norm())) continue;
+      best = second.norm() / first.norm();
+      h_[i] = steps[k];
+    }
+  }
+}
+
+/// Differences at u_. False: no evaluations are left, or a column cannot be had.
 bool Search::jacobian() {
   if (left() < count()) return false;
+  const bool both = left() > 2 * count();
   std::vector<VectorXd> points;
   for (Index i = 0; i < count(); ++i) {
-    points.push_back(u_);
-    points.back()[i] += u_[i] + difference_ > 1 ? -difference_ : difference_;
+    const Probe each = probe(i, h_[i]);
+    points.push_back(each.points[0]);
+    if (both && each.central) points.push_back(each.points[1]);
   }
   const auto found = at(points);
   J_.resize(r_.size(), count());
+  std::size_t next = 0;
   for (Index i = 0; i < count(); ++i) {
-    const auto& column = found[static_cast<std::size_t>(i)];
-    if (!column) return false;
-    J_.col(i) = (*column - r_) / (points[static_cast<std::size_t>(i)][i] - u_[i]);
+    const Probe each = probe(i, h_[i]);
+    const bool two = both && each.central;
+    const auto& one = found[next];
+    const auto* const other = two ? &found[next + 1] : nullptr;
+    next += two ? 2 : 1;
+    if (one && other && *other) J_.col(i) = (*one - **other) / (2 * each.step);
+    else if (one) J_.col(i) = (*one - r_) / each.step;
+    else if (other && *other) J_.col(i) = (r_ - **other) / each.step;
+    else return false;
   }
   return true;
 }
@@ -258,13 +313,18 @@ Result<LeastSquares> Search::run() {
     return Error{"the evaluations do not suffice for one step",
                  "allow more of them than there are parameters"};
   SL_TRY(begin());
-  // Quantised residuals look flat, or steep, at a small scale: coarse differences lead the way.
-  for (const double factor : {100.0, 10.0, 1.0}) {
-    difference_ = std::min(factor * options_.difference, 0.05);
+  h_ = VectorXd::Constant(count(), 1e-3);
+  // Where the search has come to rest other steps may serve better: once more, until that gains nothing.
+  constexpr int most_passes = 4;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const double before = r_.squaredNorm();
+    choose_steps();
     damping_ = 1e-3;
     out_.converged = false;
     while (jacobian() && improve()) {}
+    if (pass > 0 && !(r_.squaredNorm() < before * (1 - options_.tolerance))) break;
   }
+  jacobian();
   finish();
   return std::move(out_);
 }

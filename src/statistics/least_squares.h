@@ -1,11 +1,13 @@
 #pragma once
-/// Nonlinear least squares within bounds: Levenberg-Marquardt with forward differences.
+/// Nonlinear least squares within bounds: Levenberg-Marquardt with differences whose steps suit the residuals.
 ///
 ///   minimise |r(x)|^2, low <= x <= high
 ///
 /// Method   x is scaled to [0, 1] by its bounds, by their logarithm where `logarithmic`. A parameter at a bound whose gradient
 ///          points outwards is held there for the step. Marquardt's damping by the diagonal of J'J. A screening comes first: the
-///          starting point and points of a Halton sequence; the best of them is where the search begins.
+///          starting point and points of a Halton sequence; the best of them is where the search begins. Differences are central; the step of
+///          each parameter is the one of five at which the second difference is the smallest part of the first, so that residuals with
+///          jumps, as those of quantised sensors, are seen at the scale of the whole. Chosen anew where the search rests.
 /// Result   covariance s^2 (J'J)^-1 of the parameters that are free, s^2 = |r|^2 / (n - free); 95 % intervals are Student's,
 ///          cut off at nothing. Parameters at a bound, and those that change no residual, are not free.
 /// Errors   no parameter, bounds that are not low < high, a logarithm of what is not positive, a start outside, no point that can
@@ -30,8 +32,6 @@ struct FitParameter {
 struct LeastSquaresOptions {
   int most_evaluations = 200;  ///< never exceeded
   int screening = 0;           ///< points tried before the search, in addition to the start
-  double difference =
-      1e-4;  ///< of the scaled parameters, after passes with 100 and 10 times as much for residuals with steps
   double largest_step = 0.25;  ///< of a scaled parameter in one iteration
   double tolerance = 1e-7;     ///< relative decrease of the sum of squares that ends the search
 };
