@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "messages/device_services.h"
+#include "messages/sandlot_soccer.h"
 #include "messages/simulation_interfaces.h"
 #include "messages/simulation_services.h"
 
@@ -50,6 +51,25 @@ struct Complete {
     std::vector<std::string> candidates;
     static void fields(auto& s, auto&& visit) {
       visit(Field{"candidates", "", "Words that may stand in place of the last one."}, s.candidates);
+    }
+  };
+};
+
+/// Decisions of a referee from the beginning of the run on: who begins to look has the latest message of the topic alone.
+struct Decisions {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/Decisions";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Decisions_Request";
+    std::string topic;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"topic", "", "Topic of the decisions; empty: the first that has some."}, s.topic);
+    }
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/Decisions_Response";
+    std::vector<RefereeDecision> decisions;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"decisions", "", "Decisions, oldest first; of very many the latest."}, s.decisions);
     }
   };
 };

@@ -36,6 +36,7 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
+      {"sandlot_msgs/srv/Decisions", "string topic\n", "sandlot_msgs/RefereeDecision[] decisions\n"},
       {"sandlot_msgs/srv/DisconnectClient", "uint64 client\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/RestartProgram", "string program\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",

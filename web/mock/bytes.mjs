@@ -52,6 +52,7 @@ export class CdrWriter {
   bool(value) { return this.u8(value ? 1 : 0); }
   u32(value) { return this.#aligned('u32', 4, value); }
   i32(value) { return this.#aligned('i32', 4, value); }
+  u64(value) { return this.#aligned('u64', 8, BigInt(value)); }
   f32(value) { return this.#aligned('f32', 4, value); }
   f64(value) { return this.#aligned('f64', 8, value); }
   string(value) {

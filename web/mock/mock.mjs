@@ -1,12 +1,13 @@
 // A stand-in for the server while the page is developed: speaks enough of docs/viewer_protocol.md, simulates nothing.
 //
-//   node mock/mock.mjs [--port 8123] [--robots 3] [--dist DIR] [--paused]
+//   node mock/mock.mjs [--port 8123] [--robots 3] [--dist DIR] [--paused] [--match]     a made-up match instead of the hall
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { WebSocketServer } from 'ws';
 import { CdrReader, CdrWriter, Writer } from './bytes.mjs';
+import { decisionMessage, decisionsUntil, makeMatch, moveMatch, playerMessage, stateMessage } from './match.mjs';
 import { clientsMessage } from './clients.mjs';
 import { SCHEMAS, SERVICES } from './schemas.mjs';
 import { cratePng } from './texture.mjs';
@@ -20,7 +21,8 @@ const port = Number(option('port', '8123'));
 const robots = Number(option('robots', '3'));
 const dist = option('dist', fileURLToPath(new URL('../dist/', import.meta.url)));
 
-const world = makeWorld(robots);
+const match = process.argv.includes('--match');
+const world = match ? makeMatch() : makeWorld(robots);
 const step_s = world.json.step_s;
 const run = { tick: 0, playing: !process.argv.includes('--paused'), speed: 1, target_s: null };
 const parameters = new Map([['sandlot.speed', 1], ['sandlot.paused', false]]);
@@ -54,7 +56,13 @@ const batteries_channel = channel('/sandlot/batteries', 'sandlot-batteries', 'sa
 const clients_channel = json('/sandlot/clients', 'sandlot.Clients');
 const clock_channel = cdr('/clock', 'rosgraph_msgs/msg/Clock');
 const log_channel = cdr('/rosout', 'rcl_interfaces/msg/Log');
-const scan_channels = world.bodies.filter((b) => b.robot).map((body) => ({ body, channel: cdr(`/${body.name}/laser/ranges`, 'sensor_msgs/msg/LaserScan') }));
+const scan_channels = world.bodies.filter((b) => b.robot && !match).map((body) => ({ body, channel: cdr(`/${body.name}/laser/ranges`, 'sensor_msgs/msg/LaserScan') }));
+// Robots repeat what the referee told them: their topics come first here, and the page should take the referee's.
+const told_channel = match ? cdr('/cyan1/referee/state', 'sandlot_msgs/msg/RefereeState') : null;
+const state_channel = match ? cdr('/rules/referee/state', 'sandlot_msgs/msg/RefereeState') : null;
+const decision_channel = match ? cdr('/rules/referee/decision', 'sandlot_msgs/msg/RefereeDecision') : null;
+const player_channels = match ? world.bodies.filter((b) => b.robot).map((body) => ({ body, id: cdr(`/${body.name}/player/state`, 'sandlot_msgs/msg/PlayerState').id })) : [];
+if (match) cdr('/cyan2/eye/image/compressed', 'sensor_msgs/msg/CompressedImage');
 let next_watch = 1;
 
 // Clients -------------------------------------------------------------------------------------------------------------
@@ -123,6 +131,7 @@ function onText(client, message) {
         if (channelId === world_channel.id) sendMessage(client, channelId, JSON.stringify(world.json));
         if (channelId === poses_channel.id) sendMessage(client, channelId, posesMessage(world, run.tick));
         if (channelId === batteries_channel.id) sendMessage(client, channelId, batteriesMessage());
+        if (channelId === state_channel?.id) sendMessage(client, channelId, stateMessage(run.tick * step_s));
         if (channelId === status_channel.id) sendMessage(client, channelId, JSON.stringify(status()));
       }
       break;
@@ -204,6 +213,9 @@ function onBinary(client, data) {
       respond({ candidates }, (w) => { w.u32(candidates.length); candidates.forEach((c) => w.string(c)); return w; });
       break;
     }
+    case '/sandlot/decisions':
+      respond({ decisions: decisionsUntil(world, run.tick * step_s) }, (w) => w.u32(0));
+      break;
     case '/sandlot/watch': {
       const reader = request ? undefined : new CdrReader(payload);
       const values = request?.values ?? reader.strings();
@@ -266,7 +278,15 @@ function consoleLine(client, line) {
         ++world.json.epoch;
         publish(world_channel.id, () => JSON.stringify(world.json));
         break;
-      case 'jump': run.tick = Math.round(Number(words[0]) / step_s); break;
+      case 'jump':
+        if (run.tick > Math.round(Number(words[0]) / step_s)) {
+          ++world.json.epoch;
+          publish(world_channel.id, () => JSON.stringify(world.json));
+        }
+        run.tick = Math.round(Number(words[0]) / step_s);
+        if (match) playMatch(run.tick * step_s);
+        publish(poses_channel.id, () => posesMessage(world, run.tick));
+        break;
       case 'pose': place(bodyNamed(words[0]), numbers[0], numbers[1], numbers[2], numbers[5] ?? numbers[3]); break;
       case 'drag': place(bodyNamed(words[0]), numbers[0], numbers[1], numbers[2]); break;
       case 'pull':
@@ -339,7 +359,8 @@ setInterval(() => {
   ++frame;
   if (run.playing) run.tick += Math.max(1, Math.round(((run.speed ?? 25) * FRAME_MS) / 1000 / step_s));
   const time_s = run.tick * step_s;
-  if (run.playing) publish(poses_channel.id, () => posesMessage(world, run.tick, frame % 60 === 0 ? undefined : new Set(world.bodies.filter((b) => b.circle || touched.has(b.id)).map((b) => b.id))));
+  if (match && run.playing) playMatch(time_s);
+  if (run.playing) publish(poses_channel.id, () => posesMessage(world, run.tick, match || frame % 60 === 0 ? undefined : new Set(world.bodies.filter((b) => b.circle || touched.has(b.id)).map((b) => b.id))));
   touched.clear();
   if (frame % 6 === 0) publish(status_channel.id, () => JSON.stringify(status()));
   if (frame % 15 === 0) publish(clients_channel.id, () => JSON.stringify(clientsMessage([...clients].map((c) => c.id), world.bodies.filter((b) => b.robot).map((b) => b.name), time_s)));
@@ -366,6 +387,17 @@ setInterval(() => {
     }
   }
 }, FRAME_MS);
+
+let told_s = 0;
+function playMatch(time_s) {
+  moveMatch(world, time_s);
+  for (const decision of decisionsUntil(world, time_s)) if (decision.at_s > told_s) publish(decision_channel.id, () => decisionMessage(decision));
+  told_s = time_s;
+  if (frame % 6 !== 0 && run.playing) return;
+  publish(state_channel.id, () => stateMessage(time_s));
+  publish(told_channel.id, () => stateMessage(time_s, true));
+  for (const { body, id } of player_channels) publish(id, () => playerMessage(world, body, time_s));
+}
 
 function scanMessage(body, time_s) {
   const beams = 181;
@@ -433,4 +465,4 @@ async function serve(request, response) {
   }
 }
 
-http.listen(port, '127.0.0.1', () => console.log(`http://127.0.0.1:${port}/ (${robots} robots)`));
+http.listen(port, '127.0.0.1', () => console.log(`http://127.0.0.1:${http.address().port}/ (${match ? 'a match' : `${robots} robots`})`));

@@ -18,7 +18,8 @@ Feed::Feed(Session& session, std::shared_ptr<Mailbox> mailbox, wire::Assets asse
       mailbox_(std::move(mailbox)),
       world_writer_(std::move(assets)),
       period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / poses_hz))),
-      step_feed_(session, mailbox_) {}
+      step_feed_(session, mailbox_),
+      decisions_(session) {}
 
 void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary) {
   subscribed_ = std::move(summary);
@@ -28,6 +29,7 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
     else session_.remove_observer(this);
   }
   step_feed_.send_to(subscribed_->step_times);
+  decisions_.attach();
   if (!subscribed_->clients) {
     topics_.clear();
     watches_.clear();
@@ -42,7 +44,10 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
   find_topics();
 }
 
-void Feed::detach() { set_subscriptions(std::make_shared<SubscriptionSummary>()); }
+void Feed::detach() {
+  set_subscriptions(std::make_shared<SubscriptionSummary>());
+  decisions_.detach();
+}
 
 void Feed::follow_session() {
   const Simulation& simulation = session_.simulation();

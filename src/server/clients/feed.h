@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "server/clients/decision_log.h"
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
 #include "server/clients/step_feed.h"
@@ -65,6 +66,8 @@ class Feed final : public Observer {
   Status watch(ClientId viewer, std::uint32_t channel, const std::vector<std::string>& values,
                double rate_hz);
   void unwatch(std::uint32_t channel);
+
+  DecisionLog& decisions() { return decisions_; }
 
   /// A program whose client is told of each step behind the messages of its tick.
   void add_link(std::shared_ptr<programs::remote::Link> link);
@@ -123,6 +126,7 @@ class Feed final : public Observer {
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<programs::remote::Link>> links_;
   StepFeed step_feed_;
+  DecisionLog decisions_;
   std::vector<std::byte> scratch_;
   std::vector<FrameDelivery> deliveries_;  ///< that were not sent yet
   Payload batteries_;                      ///< as last sent

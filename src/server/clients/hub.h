@@ -255,6 +255,8 @@ class Hub final : private ServiceHost {
   void wait(std::function<std::optional<Status>(const Session::Report&)> reached,
             std::function<void(const Status&)> done) override;
   void watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) override;
+  void decisions(const std::string& topic,
+                 std::function<void(std::vector<msg::RefereeDecision>)> done) override;
   Memory& memory() override { return memory_; }
   std::function<void(std::function<void()>)> way_back() override;
   void open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, const Status& status,

@@ -148,6 +148,10 @@ void Hub::open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, 
   done(made.info.topic);
 }
 
+void Hub::decisions(const std::string& topic, std::function<void(std::vector<msg::RefereeDecision>)> done) {
+  post([feed = feed_, topic, done = std::move(done)](Session&) { done(feed->decisions().decisions(topic)); });
+}
+
 void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> reached,
                std::function<void(const Status&)> done) {
   waiting_.push_back({std::move(reached), std::move(done), report_.tick, Clock::now()});

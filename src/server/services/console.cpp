@@ -32,6 +32,12 @@ void watch_values(const ServiceContext& context, const msg::WatchValues::Request
                      });
 }
 
+void decisions(const ServiceContext& context, const msg::Decisions::Request& request,
+               const Reply<msg::Decisions>& reply) {
+  context.host.decisions(request.topic,
+                         [reply](std::vector<msg::RefereeDecision> found) { reply({std::move(found)}); });
+}
+
 void disconnect_client(const ServiceContext& context, const msg::DisconnectClient::Request& request,
                        const Reply<msg::DisconnectClient>& reply) {
   const Status status = context.host.disconnect(request.client);

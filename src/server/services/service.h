@@ -45,6 +45,9 @@ class ServiceHost {
   /// Opens a topic of sandlot_msgs/msg/Samples for this client. @param done  gets the topic's name
   virtual void watch(ClientId client, const std::vector<std::string>& values, double rate_hz,
                      std::function<void(const Result<std::string>& topic)> done) = 0;
+  /// Decisions of referees so far. @param done  called on the simulation's thread
+  virtual void decisions(const std::string& topic,
+                         std::function<void(std::vector<msg::RefereeDecision>)> done) = 0;
   /// What services know of the run from calls before; on the transport's thread.
   struct Memory {
     std::string world;  ///< file of the world; "": it has none

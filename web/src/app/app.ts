@@ -17,10 +17,12 @@ import {GraphPanel} from '../ui/graph';
 import {openHelp} from '../ui/help';
 import {Inspector} from '../ui/inspector';
 import {LogPanel} from '../ui/log';
+import {MatchPanel} from '../ui/match';
 import {Toasts} from '../ui/overlays';
 import {openPalette} from '../ui/palette';
 import {saveBlob} from '../ui/save';
 import {Score} from '../ui/score';
+import {ScoreBoard} from '../ui/score_board';
 import {CameraMode, cameras, overlays, SceneTools, Tool} from '../ui/scene_tools';
 import {Teleop} from '../ui/teleop';
 import {TopicsPanel} from '../ui/topics';
@@ -33,6 +35,7 @@ import {bindKeys} from './bindings';
 import type {Context} from './context';
 import {dragLine} from './drags';
 import {word} from './format';
+import {Game} from './game';
 import {Parameters} from './parameters';
 import {SensorOverlays} from './sensors';
 import {remember, remembered} from './settings';
@@ -46,6 +49,7 @@ export class App {
   readonly scene: SceneView;
   readonly plots: PlotsPanel;
   readonly agents: AgentsPanel;
+  readonly game: Game;
   private readonly steer: Steer;
   private readonly actions: Actions;
   private readonly toasts = new Toasts();
@@ -87,12 +91,19 @@ export class App {
         this.frame.open('matrix');
         matrix.choose(topic);
       },
+      showPicture: (topic) => {
+        this.frame.open('pictures');
+        pictures.show(topic);
+      },
       showLog: (program) => {
         this.frame.open('log');
         log.showOnly(program);
       },
     };
-    this.bar = new Bar(this.context);
+    // What is counted at a message of poses needs the scene to have had it.
+    this.client.subscribe('/sandlot/poses', (message) => this.scene.applyPoses(message.bytes));
+    this.game = new Game(this.client, this.store, this.scene);
+    this.bar = new Bar(this.context, this.game);
     this.frame = new Frame(this.bar.element);
     this.frame.sceneHost.append(sceneElement);
     stage.remove();
@@ -115,10 +126,14 @@ export class App {
     const log = new LogPanel(this.context, (text) => this.frame.setBadge('log', text));
     const matrix = new MatrixPanel(this.context);
     this.agents = new AgentsPanel(this.context);
-    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['pictures', 'Cameras', new PicturesPanel(this.context)], ['panels', 'Panels', new RobotPanelsPane(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
+    const pictures = new PicturesPanel(this.context);
+    const match = new MatchPanel(this.context, this.game);
+    for (const [id, title, panel] of [['plots', 'Plots', this.plots], ['match', 'Match', match], ['pictures', 'Cameras', pictures], ['panels', 'Panels', new RobotPanelsPane(this.context)], ['console', 'Console', this.console], ['log', 'Log', log], ['clients', 'Clients', new ClientsPanel(this.context)], ['topics', 'Topics', new TopicsPanel(this.context)],
       ['graph', 'Graph', new GraphPanel(this.context)], ['matrix', 'Matrix', matrix], ['agents', 'Agents', this.agents], ['commands', 'Commands', new CommandsPanel(this.context)]] as const) {
       this.frame.addPane({id, title, panel});
     }
+    this.frame.setPresent('match', false);
+    this.game.onState.on((state) => this.frame.setPresent('match', state !== null));
     this.frame.addPhoneTab('tree', 'World', 'list');
     this.frame.addPhoneTab('inspect', 'Inspect', 'sliders');
     this.frame.addPhoneTab('dock', 'Plots', 'plot', 'plots');
@@ -131,7 +146,7 @@ export class App {
     this.frame.onShown();
 
     this.tools = new SceneTools(this.context, this.teleop, this.video, this.frame.sceneHost);
-    this.frame.sceneHost.append(...this.tools.elements, new Score(this.context).element);
+    this.frame.sceneHost.append(...this.tools.elements, new Score(this.context).element, new ScoreBoard(this.context, this.game).element);
     const sensors = new SensorOverlays(this.client, this.store, this.scene);
     this.tools.onOverlays = () => {
       sensors.show({scans: this.tools.on.scans ?? false, ranges: this.tools.on.ranges ?? false, views: this.tools.on.frusta ?? false, objects: this.tools.on.objects ?? false});
@@ -167,7 +182,6 @@ export class App {
     });
     client.subscribe('/sandlot/world', (message) => store.setWorld(message.value() as World), {background: true});
     client.subscribe('/sandlot/status', (message) => store.setStatus(message.value() as Status), {background: true});
-    client.subscribe('/sandlot/poses', (message) => scene.applyPoses(message.bytes));
     document.addEventListener('visibilitychange', () => client.setHidden(document.hidden && !this.video.active));
     client.setHidden(document.hidden);
     client.onStatus.on((status) => {
@@ -293,7 +307,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'agents', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'match', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'agents', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),

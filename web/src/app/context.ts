@@ -22,6 +22,8 @@ export interface Context {
   /** Opens a phase plot: values against the first one. */
   phase: (addresses: string[]) => void;
   showMatrix: (topic: string) => void;
+  /** Opens the pictures of cameras with this topic among them. */
+  showPicture: (topic: string) => void;
   /** Opens the log with the lines of a program alone. */
   showLog: (program: string) => void;
 }

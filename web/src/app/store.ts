@@ -120,6 +120,12 @@ export class Store {
     return this.role === 'admin' ? null : 'You are watching: only an administrator can steer';
   }
 
+  /** As above, for jumps in time. */
+  whyNotJump(): string | null {
+    const {status} = this;
+    return this.whyNotPlay() ?? (status && !status.may_rewind ? status.why_not || 'This run keeps no snapshots to go back to' : null);
+  }
+
   /** As above, for what changes the run. */
   whyNotSteer(): string | null {
     const reason = this.whyNotPlay();

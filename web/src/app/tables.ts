@@ -57,6 +57,7 @@ const table: [string, Action['group'], string, string[], boolean][] = [
   ['pane.matrix', 'Panels', 'Matrix', [], false],
   ['pane.agents', 'Panels', 'Agents', [], false],
   ['pane.pictures', 'Panels', 'Cameras', [], false],
+  ['pane.match', 'Panels', 'Match', [], false],
   ['pane.panels', 'Panels', 'Screens and keys of robots', [], false],
   ['pane.commands', 'Panels', 'Commands', [], false],
   ['page.palette', 'Page', 'All commands', ['ctrl+k'], false],

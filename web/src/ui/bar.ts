@@ -1,6 +1,7 @@
 // The bar above: what runs, and its time.
 import type {Context} from '../app/context';
 import {formatBytes, formatNumber, formatTime} from '../app/format';
+import type {Game} from '../app/game';
 import {ticker} from '../app/ticker';
 import {h, setReason, setText, setTitle, svg} from './dom';
 import {icon} from './icons';
@@ -23,7 +24,7 @@ export class Bar {
   private readonly themeButton = h('button', {class: 'plain icon-only', testid: 'theme', 'aria-label': 'Dark or light'});
   readonly element: HTMLElement;
 
-  constructor(private readonly context: Context) {
+  constructor(private readonly context: Context, game: Game) {
     const {actions, store, steer} = context;
     for (const [button, id] of [[this.play, 'time.play'], [this.step, 'time.step'], [this.reset, 'time.reset'], [this.themeButton, 'page.theme']] as const) {
       button.addEventListener('click', () => actions.run(id));
@@ -43,7 +44,7 @@ export class Bar {
           h('b', {}, 'Sandlot'), this.name),
         this.play, this.step, this.reset, this.speed,
         h('div', {class: 'clock'}, this.time, this.rtf),
-        h('i', {class: 'break'}), new Timeline(context).element, this.recording, this.role, this.state, this.viewers,
+        h('i', {class: 'break'}), new Timeline(context, game).element, this.recording, this.role, this.state, this.viewers,
         h('span', {class: 'sep'}),
         h('span', {class: 'layout-buttons'}, button('panels.left', 'panelLeft', 'Tree'), button('panels.dock', 'panelBottom', 'Panels below'), button('panels.right', 'panelRight', 'Inspector')),
         h('span', {class: 'palette-button'}, button('page.palette', 'search', 'All commands')), this.themeButton, button('page.help', 'help', 'Help'));

@@ -72,6 +72,12 @@ export class Frame {
     entry.badge.classList.toggle('hidden', text === '');
   }
 
+  /** Whether there is something behind a tab; the tab goes otherwise, unless it is open. */
+  setPresent(id: string, present: boolean): void {
+    const entry = this.panes.get(id);
+    if (entry) entry.tab.hidden = !present && id !== this.active;
+  }
+
   addPhoneTab(panel: PhonePanel, title: string, iconName: string, pane?: string): void {
     this.phoneTabs.append(h('button', {
       'data-phone': panel, 'data-pane': pane ?? '', 'aria-pressed': 'false', on: {click: () => {

@@ -138,6 +138,12 @@ export class PicturesPanel implements Panel {
   }
 
   show(topic: string): void {
+    if (topic !== '' && this.windows.some((w) => w.chosen === topic)) return;
+    const free = this.windows.find((w) => w.chosen === '');
+    if (topic !== '' && free) {
+      free.choose(topic);
+      return;
+    }
     if (this.windows.length >= windows_max) {
       this.context.toast(`No more than ${windows_max} pictures at once`, 'warning');
       return;

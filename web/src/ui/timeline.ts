@@ -1,7 +1,9 @@
 // The line of time: what has been and can be gone back to, snapshots that are kept, and, where the end is known, what is to come.
-// Click or drag to jump.
+// Click or drag to jump. What a referee decided has marks with a hint; a click near one jumps to its very time.
 import type {Context} from '../app/context';
 import {formatTime} from '../app/format';
+import type {Game} from '../app/game';
+import {markNear, TimeMark} from '../app/match';
 import {ticker} from '../app/ticker';
 import {h, setTitle} from './dom';
 
@@ -14,17 +16,23 @@ export function spanOf(status: {begin_s: number; kept_from_s?: number; end_s: nu
   return [begin, Math.max(end, begin + 1e-9)];
 }
 
+const near_px = 5, most_events = 400;
+
 export class Timeline {
   private readonly past = h('div', {class: 'past'});
   private readonly marks = h('div', {class: 'marks'});
+  private readonly events = h('div', {class: 'events', testid: 'time-events'});
   private readonly head = h('div', {class: 'head'});
   private readonly hint = h('div', {class: 'hint mono', hidden: true});
   readonly element = h('div', {class: 'timeline', role: 'slider', tabindex: '0', 'aria-label': 'Time', testid: 'timeline'},
-      h('div', {class: 'rail'}, this.past), this.marks, this.head, this.hint);
+      h('div', {class: 'rail'}, this.past), this.marks, this.events, this.head, this.hint);
   private marksKey = '';
+  private eventsKey = '';
+  private events_: TimeMark[] = [];
   private held_s: number | null = null;
 
-  constructor(private readonly context: Context) {
+  constructor(private readonly context: Context, private readonly game: Game) {
+    game.onLog.on(() => ticker.request(this.update));
     context.store.onStatus.on(() => ticker.request(this.update));
     context.store.onRole.on(() => ticker.request(this.update));
     this.element.addEventListener('pointermove', (event) => this.hover(event));
@@ -51,8 +59,7 @@ export class Timeline {
   }
 
   private reason(): string | null {
-    const status = this.context.store.status;
-    return this.context.store.whyNotPlay() ?? (status && !status.may_rewind ? status.why_not || 'This run keeps no snapshots to go back to' : null);
+    return this.context.store.whyNotJump();
   }
 
   private release(jump: boolean): void {
@@ -62,7 +69,19 @@ export class Timeline {
     ticker.request(this.update);
   }
 
+  /** The event that the pointer is at. */
+  private eventAt(x_px: number): TimeMark | null {
+    const status = this.context.store.status;
+    if (!status || this.events_.length === 0) return null;
+    const box = this.element.getBoundingClientRect();
+    const [begin, end] = spanOf(status);
+    const s_per_px = (end - begin) / Math.max(1, box.width - 16);
+    return markNear(this.events_, begin + (x_px - box.left - 8) * s_per_px, near_px * s_per_px);
+  }
+
   private timeAt(x_px: number): number {
+    const event = this.eventAt(x_px);
+    if (event) return event.time_s;
     const status = this.context.store.status;
     const box = this.element.getBoundingClientRect();
     const part = Math.max(0, Math.min(1, (x_px - box.left - 8) / Math.max(1, box.width - 16)));
@@ -81,8 +100,10 @@ export class Timeline {
     const box = this.element.getBoundingClientRect();
     const reason = this.reason();
     this.hint.hidden = false;
-    this.hint.textContent = reason ?? formatTime(time_s);
-    this.hint.style.left = `${Math.max(30, Math.min(box.width - 30, event.clientX - box.left))}px`;
+    const mark = this.eventAt(event.clientX);
+    this.hint.textContent = mark ? `${formatTime(mark.time_s)}  ${mark.title}` : reason ?? formatTime(time_s);
+    const half_px = this.hint.offsetWidth / 2;
+    this.hint.style.left = `${Math.max(half_px, Math.min(box.width - half_px, event.clientX - box.left))}px`;
     ticker.request(this.update);
   }
 
@@ -101,6 +122,7 @@ export class Timeline {
     this.element.setAttribute('aria-valuemax', String(end));
     this.element.setAttribute('aria-valuenow', String(status.time_s));
     this.element.setAttribute('aria-valuetext', formatTime(status.time_s));
+    this.showEvents(begin, end, part);
     const kept = status.history_s.filter((t) => t >= begin);
     const thinned = kept.length > 400 ? kept.filter((_, i) => i % Math.ceil(kept.length / 400) === 0) : kept;
     const key = status.replay ? '' : thinned.map((t) => part(t).toFixed(3)).join();
@@ -108,4 +130,21 @@ export class Timeline {
     this.marksKey = key;
     this.marks.replaceChildren(...(status.replay ? [] : thinned.map((t) => h('i', {class: 'mark', style: {left: `${(part(t) * 100).toFixed(2)}%`}}))));
   };
+
+  /** Goals and cards always, of the rest what fits. */
+  private showEvents(begin: number, end: number, part: (time_s: number) => number): void {
+    const all = this.game.marks(begin, end);
+    const notes = all.filter((m) => m.weight === 'minor' || m.weight === 'call');
+    const step = Math.ceil(notes.length / most_events);
+    const kept = step <= 1 ? all : all.filter((m) => (m.weight !== 'minor' && m.weight !== 'call') || notes.indexOf(m) % step === 0);
+    const key = kept.map((m) => `${part(m.time_s).toFixed(4)}${m.color}${m.weight}`).join();
+    if (key === this.eventsKey) return;
+    this.eventsKey = key;
+    this.events_ = kept;
+    this.events.replaceChildren(...kept.map((m) => {
+      const mark = h('i', {class: `event ${m.weight}`, 'data-time': m.time_s.toFixed(3), style: {left: `${(part(m.time_s) * 100).toFixed(2)}%`}});
+      mark.style.background = m.color;
+      return mark;
+    }));
+  }
 }
