@@ -1,12 +1,13 @@
-// A match on the page, in a browser as a person looks at it. The match is made up by the page's own stand-in for a server (web/mock), whose
-// script is known to the second: what the page shows is held against that. Pictures stay in BUILD/page_tests.
+// A match on the page, in a browser as a person looks at it. Most of it is made up by the page's own stand-in for a server (web/mock), whose
+// script is known to the second: what the page shows is held against that. At the end a run with a referee. Pictures stay in BUILD/page_tests.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync } from "node:fs";
 import { resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { chromium } from "playwright-core";
-import { until } from "./served.mjs";
+import { Scratch, Served, until } from "./served.mjs";
+import { Viewer } from "./viewer.mjs";
 
 const build = process.env.SANDLOT_BUILD ?? "build/release";
 const pictures = `${build}/page_tests`;
@@ -16,14 +17,15 @@ const page_folder = resolve(process.env.SANDLOT_PAGE ?? `${build}/page`);
 const skip = !existsSync(executablePath) ? "there is no chromium" : !existsSync("web/node_modules/ws") ? "there is no web/node_modules" : false;
 const by = (id) => `[data-testid="${id}"]`;
 const complaints = [];
+const scratch = new Scratch();
 let mock, browser, page, url;
 
-async function open(theme) {
+async function open(theme, address = url) {
   const opened = await (await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: theme })).newPage();
   opened.setDefaultTimeout(60000);
   opened.on("pageerror", (error) => complaints.push(String(error)));
   opened.on("console", (message) => { if (message.type() === "error") complaints.push(message.text()); });
-  await opened.goto(url);
+  await opened.goto(address);
   return opened;
 }
 const text = (id) => page.locator(by(id)).first().textContent();
@@ -49,6 +51,8 @@ before(async () => {
 after(async () => {
   await browser?.close();
   mock?.kill();
+  Served.killAll();
+  scratch.remove();
 });
 
 test("the board has the referee's score and clock, not what a robot was told", { skip }, async () => {
@@ -152,6 +156,36 @@ test("in the light theme it reads as well", { skip }, async () => {
   const colors = await page.locator(by("board-news")).evaluate((e) => [getComputedStyle(e).color, document.documentElement.dataset.theme]);
   assert.equal(colors[1], "light");
   await page.screenshot({ path: `${pictures}/match_light.png` });
+});
+
+test("a run with a referee: its decisions come late to who looks late, and go with a jump back", { skip }, async () => {
+  await page.context().close();
+  const run = await Served.start(["run", "tests/referee/goal.yaml", "--paused"], scratch);
+  const probe = new Viewer(run.ws, "foxglove.websocket.v1");
+  await probe.subscribe("/sandlot/status", (s) => { probe.status = s; });
+  await until("a status", () => probe.status);
+  const arrive = async (at_s) => {
+    assert.equal((await probe.say(`jump ${at_s}`)).ok, true);
+    await until(`${at_s} s`, () => Math.abs(probe.status.time_s - at_s) < 1e-6 && probe.status.state === "paused");
+  };
+  await arrive(5);
+  page = await open("dark", run.url);
+  await page.locator(by("tab-match")).click();
+  await page.locator(`${by("decision")}.goal`).waitFor();
+  const rules = () => page.locator(`${by("decision")} .rule`).allTextContents();
+  assert.deepEqual((await rules()).slice(0, 4), ["Begin", "Start", "In play", "Goal"], "as the head of the file says");
+  assert.equal(await text("board-cyan"), "1");
+  await page.locator(`${by("decision")}.goal`).click();
+  await until("three robots", async () => (await page.locator(`${by("field-picture")} .robot`).count()) === 3);
+  await page.screenshot({ path: `${pictures}/match_referee.png` });
+  const before = await rules();
+  await page.locator(by("match-before")).click();
+  await until("the time before the goal", () => probe.status.state === "paused" && probe.status.time_s < 1);
+  await until("no goal in the log", async () => (await page.locator(`${by("decision")}.goal`).count()) === 0);
+  await arrive(5);
+  await until("the same decisions as before", async () => JSON.stringify(await rules()) === JSON.stringify(before));
+  probe.close();
+  await run.stop();
 });
 
 test("nothing went wrong in the browser", { skip }, () => assert.deepEqual(complaints, []));

@@ -300,11 +300,6 @@ export class MatchPanel implements Panel {
     this.fillPlayers();
   };
 
-  themeChanged(): void {
-    this.drawn_ms = 0;
-    ticker.request(this.update);
-  }
-
   setVisible(visible: boolean): void {
     if (visible === this.visible) return;
     this.visible = visible;
