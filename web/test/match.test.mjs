@@ -32,6 +32,8 @@ test('words and clocks as people read them', () => {
   assert.equal(m.titleOf(decision(1, 0, 'goal', { score: [1, 0] })), 'Goal: cyan (1 : 0)');
   assert.equal(m.titleOf(decision(1, 0, 'corner', { score: [1, 0] })), 'Corner: cyan');
   assert.deepEqual(['goal', 'own_goal', 'second_yellow', 'half_time', 'corner', 'in_play'].map((rule) => m.weightOf(decision(1, 0, rule))), ['goal', 'goal', 'card', 'stage', 'call', 'minor']);
+  assert.equal(m.reasonOf({ robot: 'cyan2', reason: 'is too near to the ball' }), 'cyan2: is too near to the ball');
+  assert.equal(m.reasonOf({ robot: 'cyan2', reason: 'cyan2 touched it last' }), 'cyan2 touched it last');
   const state = (more) => newsOf({ stage: 'first_half', phase: 'running', set_piece: '', team: '', in_play: true, ...more });
   assert.equal(state({}), 'In play');
   assert.equal(state({ phase: 'preparing', set_piece: 'throw_in', team: 'magenta', in_play: false }), 'Throw-in, magenta · preparing');

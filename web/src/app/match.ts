@@ -142,6 +142,11 @@ export function titleOf(decision: Decision): string {
   return `${wordsOf(decision.rule)}${decision.team === '' ? '' : `: ${decision.team}`}${score}`;
 }
 
+/** The reason, behind the robot that it is about where it does not name it. */
+export function reasonOf({robot, reason}: Decision): string {
+  return robot === '' || reason.includes(robot) ? reason : `${robot}: ${reason}`;
+}
+
 // --- the log
 
 /** All decisions of a course of the run, by their numbers. */

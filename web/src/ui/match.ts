@@ -2,7 +2,7 @@
 import type {Context, Panel} from '../app/context';
 import {formatTime} from '../app/format';
 import type {Game} from '../app/game';
-import {clockText, Decision, PlayerReport, playerOf, playerType, shortStage, titleOf, weightOf, wordsOf} from '../app/match';
+import {clockText, Decision, PlayerReport, playerOf, playerType, reasonOf, shortStage, titleOf, weightOf, wordsOf} from '../app/match';
 import {ticker} from '../app/ticker';
 import {h, setReason, setText, setTitle} from './dom';
 import {FieldPicture} from './field_picture';
@@ -18,6 +18,11 @@ type View = 'now' | 'moment' | 'ball' | 'passes' | `team ${string}`;
 function rgbOf(color: string): [number, number, number] {
   const hex = /^#([\da-f]{2})([\da-f]{2})([\da-f]{2})/i.exec(color);
   return hex ? [parseInt(hex[1] as string, 16), parseInt(hex[2] as string, 16), parseInt(hex[3] as string, 16)] : [140, 150, 165];
+}
+
+function sentence(decision: Decision): string {
+  const text = reasonOf(decision);
+  return decision.robot !== '' && text.startsWith(decision.robot) ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 interface PlayerRow {
@@ -92,9 +97,9 @@ export class MatchPanel implements Panel {
     dot.style.background = d.team === '' ? 'transparent' : this.game.color(d.team);
     return h('div', {
       class: `decision ${weight}`, role: 'option', 'aria-selected': String(d === this.chosen), 'data-sequence': d.sequence, testid: 'decision', on: {click: () => this.choose(d)},
-      title: `${titleOf(d)}\n${d.reason}${d.robot === '' ? '' : `\nRobot: ${d.robot}`}\n${formatTime(d.time_s)}, tick ${d.tick}${d.command === '' ? '' : `, ${d.command}`}`,
+      title: `${titleOf(d)}\n${reasonOf(d)}\n${formatTime(d.time_s)}, tick ${d.tick}${d.command === '' ? '' : `, ${d.command}`}`,
     }, h('span', {class: 'number when'}, h('i', {class: 'faint'}, shortStage(d.stage)), clockText(d.clock_s)), dot, h('b', {class: 'rule'}, wordsOf(d.rule)),
-    weight === 'goal' && d.score.length === 2 ? h('span', {class: 'number goal-score'}, `${d.score[0]} : ${d.score[1]}`) : null, h('span', {class: 'dim ellipsis reason'}, d.reason));
+    weight === 'goal' && d.score.length === 2 ? h('span', {class: 'number goal-score'}, `${d.score[0]} : ${d.score[1]}`) : null, h('span', {class: 'dim ellipsis reason'}, reasonOf(d)));
   }
 
   choose(decision: Decision): void {
@@ -162,7 +167,7 @@ export class MatchPanel implements Panel {
     if (this.view === 'moment') {
       if (moment) field.showMoment(moment.players, moment.ball, color, moment.robot, weightOf(moment) === 'minor' || (moment.point[0] === 0 && moment.point[1] === 0 && moment.rule !== 'goal') ? null : moment.point);
       else field.showMoment([], null, color);
-      caption = moment ? `${titleOf(moment)}. ${moment.reason.charAt(0).toUpperCase()}${moment.reason.slice(1)}` : 'Choose a decision in the log';
+      caption = moment ? `${titleOf(moment)}. ${sentence(moment)}` : 'Choose a decision in the log';
       const reason = this.context.store.whyNotJump();
       for (const button of [this.there, this.before]) setReason(button, reason, button === this.there ? 'Take the run to this moment' : `Take the run to ${before_s} s before this moment`);
     } else if (this.view === 'now') {
