@@ -23,25 +23,25 @@ msg::RefereeDecision decision(std::uint64_t sequence, double at_s, const char* r
 
 /// A log of a run that has come to 1 s.
 struct LogOfASecond {
-  LogOfASecond() : session(sandlot::test::build(sandlot::test::arena("rigid", 1, "")), {}), log(session) {
+  LogOfASecond() : session(sandlot::test::build(sandlot::test::arena("rigid", 1, "")), {}), kept(session) {
     for (int i = 0; i < 100; ++i) EXPECT_TRUE(session.simulation().tick());
   }
   std::vector<std::string> rules(const std::string& topic = "") {
     std::vector<std::string> out;
-    for (const msg::RefereeDecision& each : log.decisions(topic)) out.push_back(each.rule);
+    for (const msg::RefereeDecision& each : kept.decisions(topic)) out.push_back(each.rule);
     return out;
   }
   Session session;
-  DecisionLog log;
+  DecisionLog kept;
 };
 using Rules = std::vector<std::string>;
 
 TEST(DecisionLog, KeepsWhatComesOnceAndOfEachTopicByItself) {
   LogOfASecond of;
-  of.log.take("/rules/referee/decision", decision(1, 0.1, "begin"));
-  of.log.take("/rules/referee/decision", decision(2, 0.5, "goal"));
-  of.log.take("/rules/other/decision", decision(1, 0.6, "corner"));
-  of.log.take("/rules/referee/decision", decision(1, 0.1, "begin"));  // again, after a jump back
+  of.kept.take("/rules/referee/decision", decision(1, 0.1, "begin"));
+  of.kept.take("/rules/referee/decision", decision(2, 0.5, "goal"));
+  of.kept.take("/rules/other/decision", decision(1, 0.6, "corner"));
+  of.kept.take("/rules/referee/decision", decision(1, 0.1, "begin"));  // again, after a jump back
   EXPECT_EQ(of.rules(), (Rules{"begin", "goal"}));
   EXPECT_EQ(of.rules("/rules/other/decision"), (Rules{"corner"}));
   EXPECT_EQ(of.rules("/nobody"), Rules{});
@@ -51,22 +51,22 @@ TEST(DecisionLog, ForgetsTheCourseThatTheRunHasLeft) {
   LogOfASecond of;
   for (const auto& [sequence, at_s, rule] :
        {std::tuple(1u, 0.1, "begin"), {2u, 0.3, "goal"}, {3u, 0.4, "kickoff"}})
-    of.log.take("/d", decision(sequence, at_s, rule));
-  of.log.take("/d", decision(2, 0.35, "corner"));  // instead of the goal
+    of.kept.take("/d", decision(sequence, at_s, rule));
+  of.kept.take("/d", decision(2, 0.35, "corner"));  // instead of the goal
   EXPECT_EQ(of.rules(), (Rules{"begin", "corner"}));
-  of.log.take("/d", decision(3, 1.5, "start"));  // later than now: the run has gone back behind it
+  of.kept.take("/d", decision(3, 1.5, "start"));  // later than now: the run has gone back behind it
   EXPECT_EQ(of.rules(), (Rules{"begin", "corner"}));
-  of.log.keep_between(Time::from_s(0.2), Time::from_s(1));
+  of.kept.keep_between(Time::from_s(0.2), Time::from_s(1));
   EXPECT_EQ(of.rules(), (Rules{"corner"}));
 }
 
 TEST(DecisionLog, LosesTheOldestOfVeryMany) {
   LogOfASecond of;
-  for (std::uint64_t i = 1; i <= most_decisions + 5; ++i) of.log.take("/d", decision(i, 0.5));
-  const auto kept = of.log.decisions("/d");
-  ASSERT_EQ(kept.size(), most_decisions);
-  EXPECT_EQ(kept.front().sequence, 6u);
-  EXPECT_EQ(kept.back().sequence, most_decisions + 5);
+  for (std::uint64_t i = 1; i <= most_decisions + 5; ++i) of.kept.take("/d", decision(i, 0.5));
+  const auto latest = of.kept.decisions("/d");
+  ASSERT_EQ(latest.size(), most_decisions);
+  EXPECT_EQ(latest.front().sequence, 6u);
+  EXPECT_EQ(latest.back().sequence, most_decisions + 5);
 }
 
 TEST(Mailbox, LosesTheOldestMessagesWhenItIsFullButNotWhatCameFromOutside) {
