@@ -62,6 +62,18 @@ TEST_F(Fit, FindsGainsThatWereHidden) {
   EXPECT_LE(json["runs"].get<int>(), 200);
 }
 
+/// Three at once, one of which does little: each within its interval, which is narrow.
+TEST_F(Fit, FindsGainsAndFrictionTogether) {
+  const Printed printed = fit("--json --runs 400 --screening 12" + parameter(gain, "0.1:5:log") +
+                              parameter(integral, "0.5:20:log") + parameter(friction, "0.00005:0.005:log"));
+  ASSERT_EQ(printed.exit_code, 0) << printed.out;
+  const auto json = nlohmann::json::parse(printed.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << printed.out;
+  const std::vector<double> hidden{0.7, 5, 0.0005};
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+    EXPECT_NEAR(json["parameters"][i]["value"].get<double>(), hidden[i], 0.02 * hidden[i]) << printed.out;
+}
+
 TEST_F(Fit, NamesAParameterThatChangesNothing) {
   const Printed printed = fit("--runs 40 --screening 2" + parameter(gain, "0.2:2:log") +
                               parameter("robots[0].devices.left_motor.max_rate", "200:900") +

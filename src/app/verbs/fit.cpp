@@ -255,7 +255,7 @@ std::vector<std::optional<std::vector<double>>> trials(const Problem& problem,
   std::vector<std::optional<std::vector<double>>> out(points.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i = next++; i < points.size(); i = next++)
+    for (std::size_t i = next++; i < points.size() && !interrupted(); i = next++)
       if (auto residuals = trial(problem, points[i])) out[i] = std::move(*residuals);
   };
   std::vector<std::thread> threads;
@@ -345,13 +345,14 @@ Result<LeastSquares> search(Problem& problem) {
       problem.fixed.push_back(each);
   SL_TRY(read_commands(problem));
   SL_TRY(read_compared(problem));
-  std::string why;
+  catch_interrupts();
   const auto evaluate = [&](const std::vector<std::vector<double>>& points) {
     return trials(problem, points);
   };
   auto fitted = statistics::least_squares(
       problem.parameters, {.most_evaluations = problem.options.runs, .screening = problem.options.screening},
       evaluate);
+  if (interrupted()) return Error{"interrupted"};
   if (fitted) return fitted;
   // The reason of a run tells more than that none could be carried out.
   std::vector<double> start;

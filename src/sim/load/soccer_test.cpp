@@ -14,7 +14,9 @@ namespace {
 std::unique_ptr<Simulation> soccer_world(const std::string& engine, const std::string& rest) {
   Diagnostics diagnostics;
   LoadOptions options;
-  options.text = "version: 1\nname: t\nphysics: " + engine + "\ntime: {step: 4 ms, substeps: 2}\n" + rest;
+  const std::string text = "version: 1\nname: t\nphysics: " + engine + "\ntime: {step: 4 ms, substeps: 2}\n" +
+                           rest;
+  options.text = text;
   auto setup = load("t.yaml", options, diagnostics);
   EXPECT_TRUE(setup) << setup.error().text();
   return setup ? test::build(std::move(*setup)) : nullptr;

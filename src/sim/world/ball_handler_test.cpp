@@ -92,9 +92,10 @@ TEST(BallHandler, TearsOffWhereTheForceIsMassTimesAcceleration) {
       advance(*simulation, 30);
       ASSERT_TRUE(handler(*simulation).engaged);
       drive(*simulation, 0);
-      advance(*simulation, 30);
-      EXPECT_NEAR(handler(*simulation).force, std::min(2.0, ball_kg * (a - rolling_mps2)), 0.03);
-      advance(*simulation, 70);
+      // The ball settles where it is held with a time constant of 80 ms: after 0.3 s 2.4 % are missing.
+      advance(*simulation, 75);
+      EXPECT_NEAR(handler(*simulation).force, std::min(2.0, ball_kg * (a - rolling_mps2)), 0.06);
+      advance(*simulation, 150);
       EXPECT_EQ(handler(*simulation).losses, share > 1 ? 1u : 0u);
       EXPECT_EQ(handler(*simulation).engaged, share < 1);
     }
