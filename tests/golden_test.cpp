@@ -39,7 +39,7 @@ constexpr Golden goldens[] = {
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
     {"scenarios/errors.yaml --duration 10s", "ea1544123e181786"},
-    {"scenarios/beach.yaml --duration 10s", "8f70cddc7dc1ed85"},
+    {"scenarios/beach.yaml --duration 10s", "a6a5b07300a6c135"},
     {"scenarios/ball.yaml", "3ffb74f0db5c4412"},
     {"scenarios/ball.yaml --set level=objects", "d2d4824f6b4bb10f"},
     {"scenarios/formation.yaml", "f39e7746684f0ac7"},
@@ -48,7 +48,7 @@ constexpr Golden goldens[] = {
     {"scenarios/predator_prey.yaml", "899b439fe5e946ba"},
     {"scenarios/transport.yaml --duration 20s", "ec208b623a04833c"},
     {"scenarios/foraging.yaml --duration 20s", "3375fe3ab4f73060"},
-    {"scenarios/football.yaml --duration 20s", "0d5dc952034b41f5"},
+    {"scenarios/football.yaml --duration 20s", "2a056ffff8b8a2c3"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
 };
 
