@@ -42,6 +42,7 @@ std::vector<Row> viewer();     ///< P9: what looking at a run costs it
 std::vector<Row> radio();      ///< packets among many robots
 std::vector<Row> lockstep();   ///< P7: a step of a client over TCP
 std::vector<Row> rollers();    ///< P4: a robot on wheels with rollers
+std::vector<Row> match();      ///< P6: a match of twelve robots at its levels
 std::vector<Row> robios();     ///< RoBIOS programs: a time slot, and four robots with cameras
 std::vector<Row> sox();        ///< a learning step of homeokinesis against bare Eigen
 

@@ -53,10 +53,10 @@ void add_bench(CommandLine& line) {
   BenchOptions& options = line.keep<BenchOptions>();
   CLI::App* const verb = line.app.add_subcommand("bench",
                                                  "Measure Sandlot against references in the same run");
-  verb->add_option(
-      "suite", options.suite,
-      "physics, wheels, pile, swarm, rays, images, loading, recording, viewer, rollers or levels; all when "
-      "left out");
+  verb->add_option("suite", options.suite,
+                   "physics, wheels, pile, swarm, rays, images, loading, recording, viewer, rollers, levels, "
+                   "radio, lockstep, robios, match or sox; "
+                   "all when left out");
   verb->add_flag(
       "--guard", options.guard,
       "Fail when a ratio is over twice its budget, twice in a row; for machines that test changes");
