@@ -57,7 +57,7 @@ void add_games(ReportPage& page, const TournamentSummary& summary) {
   for (const GameRow& game : summary.games) {
     recorded = recorded || !game.recording.empty();
     rows.push_back({fmt::format("{}{}", game.round, game.replay ? ", replay" : ""), game.left,
-                    fmt::format("{} : {}", game.goals[0], game.goals[1]), game.right,
+                    fmt::format("{} : {}", game.goals_left, game.goals_right), game.right,
                     std::to_string(game.seed), game.walk_over ? "walk-over: " + game.reason : game.reason,
                     hash_text(game.state_hash.value), file_name(game.recording)});
   }

@@ -57,7 +57,7 @@ TEST(TournamentPage, HasTheTableTheStrengthsAndTheGames) {
   summary.table.push_back({"Slow", 2, 0, 1, 1, 2, 5, 1, 0, -0.75, -2.75, 1.25, ""});
   summary.pairs.push_back({"Fast", "Slow", 2, 1, 1, 0, 1.5, -17.56, 20.56});
   tournament::GameRow game;
-  game.left = "Slow", game.right = "Fast", game.goals = {0, 3}, game.seed = 7, game.walk_over = true;
+  game.left = "Slow", game.right = "Fast", game.goals_right = 3, game.seed = 7, game.walk_over = true;
   game.reason = "none of its programs answered";
   game.recording = "cup/games/r1_Slow_Fast_s7.mcap";
   game.state_hash.value = 0xabc;

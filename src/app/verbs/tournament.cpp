@@ -160,8 +160,8 @@ int play_tournament(const TournamentOptions& options) {
   const auto show = [&](const GameRow& game) {
     ++ended;
     if (options.json) return;
-    fmt::print("{:>5}  round {}  {} {} : {} {}{}{}\n", ended, game.round, game.left, game.goals[0],
-               game.goals[1], game.right, game.stored ? "  (from the store)" : "",
+    fmt::print("{:>5}  round {}  {} {} : {} {}{}{}\n", ended, game.round, game.left, game.goals_left,
+               game.goals_right, game.right, game.stored ? "  (from the store)" : "",
                game.walk_over ? "  walk-over: " + game.reason : "");
     std::fflush(stdout);
   };

@@ -21,9 +21,6 @@ std::string cell(const StateHash& hash) { return hash_text(hash.value); }
 std::string cell(bool x) { return x ? "true" : "false"; }
 std::string cell(double x) { return number_text(x); }
 std::string cell(const std::optional<double>& x) { return x ? number_text(*x) : ""; }
-std::string cell(const std::vector<int>& goals) {
-  return goals.size() == 2 ? fmt::format("{}:{}", goals[0], goals[1]) : "";
-}
 template <class T>
 requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) std::string cell(T x) {
   return fmt::format("{}", x);

@@ -99,7 +99,8 @@ GameRow row_of(const Match& match, const GameResult& result, bool stored) {
   out.round = match.game.round;
   out.left = match.teams[0].name;
   out.right = match.teams[1].name;
-  out.goals = {result.goals[0], result.goals[1]};
+  out.goals_left = result.goals[0];
+  out.goals_right = result.goals[1];
   out.walk_over = result.walk_over;
   out.replay = match.game.replay;
   out.stored = stored;
@@ -262,7 +263,7 @@ Result<TournamentSummary> play_tournament(const TournamentSpec& spec, const Play
     for (std::size_t i = 0; i < games.size(); ++i) {
       whole = whole && rows[i];
       if (!rows[i]) continue;
-      played.push_back({games[i], {rows[i]->goals[0], rows[i]->goals[1]}});
+      played.push_back({games[i], {rows[i]->goals_left, rows[i]->goals_right}});
       out.stored += rows[i]->stored;
       out.games.push_back(*rows[i]);
     }

@@ -67,7 +67,7 @@ using PlayGame = std::function<Result<GameResult>(const Match& match)>;
 struct GameRow {
   int round = 1;
   std::string left, right;
-  std::vector<int> goals;
+  int goals_left = 0, goals_right = 0;
   bool walk_over = false, replay = false, stored = false;
   std::uint64_t seed = 0;
   double sim_s = 0;
@@ -78,7 +78,8 @@ struct GameRow {
     visit(Field{"round", "1", "Number of the round."}, s.round);
     visit(Field{"left", "", "Name of the team that began at negative x."}, s.left);
     visit(Field{"right", "", "Name of the other team."}, s.right);
-    visit(Field{"goals", "1", "Goals of the teams, left and right."}, s.goals);
+    visit(Field{"goals_left", "1", "Goals of the team on the left."}, s.goals_left);
+    visit(Field{"goals_right", "1", "Goals of the other team."}, s.goals_right);
     visit(Field{"seed", "1", "Seed of the game."}, s.seed);
     visit(Field{"walk_over", "", "Whether a team lost by rule."}, s.walk_over);
     visit(Field{"replay", "", "Whether the game decided a tie."}, s.replay);

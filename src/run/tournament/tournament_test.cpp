@@ -92,7 +92,7 @@ TEST(Tournament, TableAddsUpAndTheBetterTeamIsStrongerBeyondItsInterval) {
   EXPECT_EQ(goals, against);
   EXPECT_NEAR(strengths, 0, 1e-9);
   int decided = 0;
-  for (const GameRow& row : all.games) decided += row.goals[0] != row.goals[1];
+  for (const GameRow& row : all.games) decided += row.goals_left != row.goals_right;
   EXPECT_EQ(points, 3 * decided + 2 * (240 - decided));
   EXPECT_EQ(all.table.front().team, "A");
   EXPECT_EQ(all.table.back().team, "D");
@@ -260,8 +260,8 @@ TEST(TournamentReports, HaveALineForEachRow) {
       "team,played,won,drawn,lost,goals,against,points,byes,strength,low,high,note\n"));
   const GameRow& game = all.games[0];
   EXPECT_THAT(games_csv(all),
-              HasSubstr("1," + game.left + "," + game.right + "," + std::to_string(game.goals[0]) + ":" +
-                        std::to_string(game.goals[1]) + ",1,false,false,the game ended,60.5," +
+              HasSubstr("1," + game.left + "," + game.right + "," + std::to_string(game.goals_left) + "," +
+                        std::to_string(game.goals_right) + ",1,false,false,the game ended,60.5," +
                         hash_text(game.state_hash.value) + ",,false\n"));
   EXPECT_THAT(as_text(all), HasSubstr("round-robin, 6 games"));
 }
