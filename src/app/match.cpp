@@ -67,6 +67,7 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
   Match out;
   RunOptions run = spec.run;
   SL_ASSIGN(run.spec.file, demo_file("match"));
+  run.spec.may_be_endless = true;  // the referee ends the game
   std::vector<formats::Override> overrides;
   for (std::size_t i = 0; i < spec.teams.size(); ++i) {
     const std::string folder = std::filesystem::absolute(spec.teams[i]).lexically_normal().string();

@@ -103,7 +103,8 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::ve
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.starts_clients = true;
-  spec.may_be_endless = options.serve || !options.refbox.at.empty() || isatty(STDOUT_FILENO);
+  spec.may_be_endless = spec.may_be_endless || options.serve || !options.refbox.at.empty() ||
+                        isatty(STDOUT_FILENO);
   Progress progress;
   std::optional<Served> served;
   std::optional<ServedRefbox> refbox;
