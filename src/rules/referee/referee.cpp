@@ -226,8 +226,8 @@ struct Referee {
     for (const soccer::Exclusion& each : output.exclusions) exclude(context, each, actions);
     publish(context, actions);
     if (output.ended && spec.stop_run)
-      actions.stop(spec.teams[0] + " " + std::to_string(state.game.score[0]) + " : " +
-                   std::to_string(state.game.score[1]) + " " + spec.teams[1]);
+      actions.stop("the game has ended: " + spec.teams[0] + " " + std::to_string(state.game.score[0]) +
+                   " : " + std::to_string(state.game.score[1]) + " " + spec.teams[1]);
   }
 
   /// The path of a robot's link; empty: it has none.

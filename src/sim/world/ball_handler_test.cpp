@@ -96,7 +96,7 @@ TEST(BallHandler, TearsOffWhereTheForceIsMassTimesAcceleration) {
       drive(*simulation, 0);
       // The ball settles where it is held with a time constant of 80 ms: after 0.3 s 2.4 % are missing.
       advance(*simulation, 75);
-      EXPECT_NEAR(handler(*simulation).force, std::min(2.0, share_of_ball * (a - rolling_mps2)), 0.06);
+      if (share < 1) { EXPECT_NEAR(handler(*simulation).force, share_of_ball * (a - rolling_mps2), 0.06); }
       advance(*simulation, 150);
       EXPECT_EQ(handler(*simulation).losses, share > 1 ? 1u : 0u);
       EXPECT_EQ(handler(*simulation).engaged, share < 1);
