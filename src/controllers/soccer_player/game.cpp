@@ -62,11 +62,17 @@ void hear_command(Game& game, const msg::RefereeCommand& command, std::string_vi
   if (me && word == "REPAIR_END") game.out = false;
 }
 
+void settle(Game& game, Vec3 ball) {
+  if (game.phase != Phase::preparing) return;
+  const Vec3 off = flat(ball) - game.spot;
+  game.spot += (dot(off, off) > 0.09 ? 1.0 : 0.1) * off;
+}
+
 bool is_open(const Game& game, Vec3 ball, double now_s) {
   if (game.phase != Phase::running) return false;
   if (game.piece == Piece::none) return true;
   const Vec3 moved = flat(ball) - game.spot;
-  return dot(moved, moved) > 0.25 || now_s - game.since_s > (game.piece == Piece::penalty ? 10 : 7);
+  return dot(moved, moved) > 0.09 || now_s - game.since_s > (game.piece == Piece::penalty ? 10 : 7);
 }
 
 }  // namespace sandlot::controllers::soccer_player

@@ -199,29 +199,48 @@ Intent keep(const Scene& scene, Memory& memory, bool may_leave) {
   return stand_at(scene, "keep", place, scene.keys->speed_mps, 0);
 }
 
-/// Own set piece: what the taker does.
+/// Aim of the set piece: where the one that offers itself will stand, else any free team-mate, else the goal.
+void aim_of_piece(const Scene& scene, Memory& memory) {
+  const double until = scene.now_s + 0.5;
+  const auto shoot = [&](Aim kind, double tolerance_rad) {
+    aim(memory, kind, best_shot(scene, scene.ball).at, tolerance_rad, scene.keys->shot_speed_mps, until);
+  };
+  if (scene.game.piece == Piece::penalty || scene.keys->play == Play::run_and_kick)
+    return shoot(Aim::shot, 0.06);
+  for (const Mate& mate : scene.mates) {
+    const double way = norm(mate.target - scene.ball);
+    if (mate.role == Role::supporter && way > 1.8 && way < 6 &&
+        room_beside(scene, scene.ball, mate.target) > 0.5)
+      return aim(memory, Aim::pass, mate.target, 0.08, pass_speed(scene, way), until);
+  }
+  if (const Mate* const mate = receiver(scene, -6))
+    return aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - scene.ball)), until);
+  shoot(Aim::clearance, 0.1);
+}
+
+/// Own set piece: the taker stands behind the ball until play may go on, comes straight, kicks once, and leaves the ball alone.
 Intent take(const Scene& scene, Memory& memory) {
-  const bool running = scene.game.phase == Phase::running;
-  if (memory.aim == Aim::none || memory.aim == Aim::dribble || scene.now_s > memory.until_s) {
-    if (scene.game.piece == Piece::penalty || scene.keys->play == Play::run_and_kick) {
-      const Shot shot = best_shot(scene, scene.ball);
-      aim(memory, Aim::shot, shot.at, 0.06, scene.keys->shot_speed_mps, scene.now_s + 0.5);
-    } else if (const Mate* const mate = receiver(scene, -6)) {
-      aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - scene.ball)),
-          scene.now_s + 0.8);
-    } else {
-      const Shot shot = best_shot(scene, scene.ball);
-      aim(memory, Aim::clearance, shot.at, 0.1, scene.keys->shot_speed_mps, scene.now_s + 0.5);
-    }
+  if (memory.aim == Aim::none || memory.aim == Aim::dribble || scene.now_s > memory.until_s)
+    aim_of_piece(scene, memory);
+  const Vec3 direction = normalised(memory.at - scene.ball), off = flat(scene.ball - scene.me);
+  const double along = dot(off, direction), across = std::abs(off.x * direction.y - off.y * direction.x);
+  const double error = std::abs(math::wrap_angle(heading(direction) - scene.yaw_rad));
+  Intent out = stand_at(scene, "take", scene.ball - 0.85 * direction, scene.keys->speed_mps, 0);
+  out.yaw_rad = heading(direction);
+  if (scene.game.phase == Phase::running && along > 0.2 && along < 1.2 &&
+      across < (along < 0.7 ? 0.11 : 0.08) && error < 0.12) {
+    out.target = scene.ball + 0.3 * direction;
+    out.speed_mps = 0.9;
+    out.keeps_clear = false;
+    out.kick = true;
+    return out;
   }
-  if (running) return play_ball(scene, memory);
-  Vec3 place = scene.ball - 0.7 * normalised(memory.at - scene.ball);
-  if (scene.game.piece == Piece::kickoff) {
-    place.x = std::min(place.x, -0.3);
-    if (norm(place - scene.ball) < 0.5) place.y += place.y > 0 ? 0.4 : -0.4;
-  }
-  Intent out = stand_at(scene, "take", place, scene.keys->speed_mps, 0.45);
-  out.yaw_rad = heading(memory.at - scene.ball);
+  const Vec3 behind = out.target;
+  if (norm(off) < 1.8) out.speed_mps = 1.1;
+  if (norm(behind - scene.me) < 0.36) return out;
+  const steering::Disc disc{scene.ball, 0.78};
+  out.target = steering::way_around(scene.me, behind, {&disc, along > 0.78 ? 0u : 1u});
+  out.rests = false;
   return out;
 }
 
@@ -259,8 +278,14 @@ Intent decide(const Scene& scene, const Task& task, Memory& memory) {
   const Game& game = scene.game;
   const bool ours = game.whose == Whose::ours, piece = game.piece != Piece::none && !scene.open;
   if (game.phase == Phase::stopped || game.out) {
-    Intent out = stand_at(scene, "stop", scene.me, 0.5, 0);
-    return out;
+    // The ball comes to where it left the field: nobody may stand there.
+    const double x = scene.goal_x() - 0.4, y = 0.5 * scene.field.width_m - 0.15;
+    const Vec3 spot{std::clamp(scene.ball.x, -x, x), std::clamp(scene.ball.y, -y, y), 0};
+    const Vec3 off = flat(scene.me - spot);
+    const double distance = norm(off);
+    if (!scene.ball_known || game.out || distance > 1.1) return stand_at(scene, "stop", scene.me, 0.5, 0);
+    const Vec3 away = normalised(off, Vec3{-1, 0, 0});
+    return stand_at(scene, "leave", spot + 1.3 * away, 1, 0);
   }
   if (task.role == Role::keeper) {
     const bool may = scene.open;
@@ -268,14 +293,14 @@ Intent decide(const Scene& scene, const Task& task, Memory& memory) {
   }
   if (piece) {
     if (ours && task.role == Role::attacker && game.piece != Piece::dropped_ball) return take(scene, memory);
-    double room = ours ? 2.3 : 3.3;
+    double room = ours ? 2.3 : 3.4;
     if (game.piece == Piece::dropped_ball) room = 1.4;
     Vec3 place = task.target;
     if (task.role == Role::attacker)
       place = scene.ball + room * normalised(Vec3{-scene.goal_x(), 0, 0} - scene.ball);
     if (ours && task.place == 1) {  // to receive
-      const double side = scene.ball.y > 0 ? -1 : 1;
-      place = {scene.ball.x + (game.piece == Piece::kickoff ? -1.2 : 0.8), scene.ball.y + 2.6 * side, 0};
+      place = {scene.ball.x + (game.piece == Piece::kickoff ? -0.6 : 0.8), scene.ball.y + 2.6 * scene.side,
+               0};
       if (game.piece == Piece::corner) place.x = scene.ball.x - 2.6;
     }
     if (game.piece == Piece::penalty) {
@@ -293,6 +318,8 @@ Intent decide(const Scene& scene, const Task& task, Memory& memory) {
     out.yaw_rad = scene.yaw_rad + 1;
     return out;
   }
+  if (memory.taken)  // the ball is for others now
+    return stand_at(scene, "leave", legal(scene, task.target, task, 1.5), scene.keys->speed_mps, 1);
   if (task.role == Role::attacker) {
     const double gx = scene.goal_x(), edge = gx - scene.field.goal_area_depth_m;
     const bool shut = std::abs(scene.ball.x) > edge + 0.05 &&

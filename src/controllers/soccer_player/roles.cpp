@@ -8,7 +8,10 @@
 namespace sandlot::controllers::soccer_player {
 namespace {
 
-constexpr double keeps_role_s = 0.5;
+constexpr double keeps_role_s = 0.5, keeps_role_at_piece_s = 4;
+constexpr double keeps_place_m2 = 1, keeps_place_at_piece_m2 = 9;
+
+constexpr double no_second_touch_s = 8;
 
 /// Time for a way, from a standing start.
 double time_for(const Scene& scene, double way_m) {
@@ -21,7 +24,7 @@ double time_for(const Scene& scene, double way_m) {
 std::array<Vec3, 3> places(const Scene& scene) {
   const double gx = scene.goal_x(), wy = 0.5 * scene.field.width_m;
   const Vec3 ball = scene.ball, goal{-gx, 0, 0};
-  const double side = ball.y > 0 ? -1 : 1;
+  const double side = scene.side;
   Vec3 support{std::clamp(ball.x + (ball.x > 0.45 * gx ? -0.5 : 2.5), -1.5, gx - 3.0),
                std::clamp(ball.y + 4.0 * side, 1.2 - wy, wy - 1.2), 0};
   Vec3 cover = goal + scene.style.line * (ball - goal);
@@ -55,11 +58,13 @@ Meeting meet(const Scene& scene, Vec3 me) {
 double cost_of(const Scene& scene, const Memory& memory) {
   if (!scene.ball_known) return 50;
   if (scene.holds) return 0;
+  if (scene.game.piece != Piece::none && !scene.open)
+    return time_for(scene, norm(scene.ball - scene.me)) + (memory.taken ? no_second_touch_s : 0);
   const Meeting meeting = meet(scene, scene.me);
   const Vec3 goal{scene.goal_x(), 0, 0};
   const Vec3 to_goal = normalised(goal - meeting.at), from_me = normalised(meeting.at - scene.me);
   double cost = meeting.after_s + 0.5 * (1 - dot(to_goal, from_me));
-  if (memory.taken && scene.now_s - memory.kicked_s < 4) cost += 5;  // no second touch
+  if (memory.taken) cost += no_second_touch_s;
   return cost;
 }
 
@@ -74,15 +79,20 @@ Task task_of(const Scene& scene, const Memory& memory, double own_cost_s) {
     std::int32_t number;
     Vec3 at;
     double cost_s;
+    Role role;
   };
+  const bool piece = scene.game.piece != Piece::none && !scene.open;
+  const double keeps_s = piece ? keeps_role_at_piece_s : keeps_role_s,
+               keeps_m2 = piece ? keeps_place_at_piece_m2 : keeps_place_m2;
   std::array<Player, most_mates + 1> players{};
   std::size_t count = 0;
   players[count++] = {scene.number, scene.me,
-                      own_cost_s - (memory.role == Role::attacker ? keeps_role_s : 0)};
+                      own_cost_s - (memory.role == Role::attacker && !memory.taken ? keeps_s : 0),
+                      memory.role};
   for (const Mate& mate : scene.mates)
     if (mate.number != scene.keys->keeper && mate.number != scene.number && count < players.size())
-      players[count++] = {mate.number, mate.at,
-                          mate.cost_s - (mate.role == Role::attacker ? keeps_role_s : 0)};
+      players[count++] = {mate.number, mate.at, mate.cost_s - (mate.role == Role::attacker ? keeps_s : 0),
+                          mate.role};
   std::sort(players.begin(), players.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Player& a, const Player& b) {
               return a.cost_s != b.cost_s ? a.cost_s < b.cost_s : a.number < b.number;
@@ -92,6 +102,7 @@ Task task_of(const Scene& scene, const Memory& memory, double own_cost_s) {
     task.target = scene.ball;
     return task;
   }
+  constexpr std::array<Role, 3> roles{Role::supporter, Role::defender, Role::sweeper};
   const std::array<Vec3, 3> spots = places(scene);
   // The others, by number, so that all solve the same.
   std::sort(players.begin() + 1, players.begin() + static_cast<std::ptrdiff_t>(count),
@@ -104,10 +115,10 @@ Task task_of(const Scene& scene, const Memory& memory, double own_cost_s) {
     for (std::size_t i = 0; i < others; ++i) {
       const Vec3 off = players[1 + i].at - spots[order[i]];
       sum += dot(off, off) + (order[i] >= others ? 1e6 : 0);  // places in their order of urgency
+      if (players[1 + i].role == roles[order[i]]) sum -= keeps_m2;
     }
     if (sum < least - 1e-9) least = sum, best = order;
   } while (std::next_permutation(order.begin(), order.end()));
-  constexpr std::array<Role, 3> roles{Role::supporter, Role::defender, Role::sweeper};
   for (std::size_t i = 0; i < count - 1; ++i)
     if (players[1 + i].number == scene.number) {
       task.place = i < others ? static_cast<int>(best[i]) + 1 : 3;

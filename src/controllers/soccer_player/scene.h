@@ -18,6 +18,7 @@ struct Scene {
   double yaw_rad = 0;
   Vec3 ball, ball_velocity;  ///< as the team knows it
   bool ball_known = false, holds = false, has_handler = false;
+  double side = 1;          ///< of the field, across, where there is more room: the one without the ball
   Game game;                ///< its spot is in A, too
   bool open = true;         ///< the ball may be played freely
   std::vector<Mate> mates;  ///< those heard within a second
@@ -44,6 +45,7 @@ struct Memory {
   Vec3 at, held_at;
   double until_s = -1e9, held_s = -1e9, kicked_s = -1e9;
   double tolerance_rad = 0.1, speed_mps = 0;
+  double side = 1;
   bool held = false, taken = false;
   std::uint64_t kicks = 0;
 
@@ -57,6 +59,7 @@ struct Memory {
     visit(Field{"kicked", "s", "Time of its latest kick."}, s.kicked_s);
     visit(Field{"tolerance", "rad", "Largest error of the heading for a kick."}, s.tolerance_rad);
     visit(Field{"speed", "m/s", "Speed of the ball to kick it with."}, s.speed_mps);
+    visit(Field{"side", "1", "Side of the field without the ball: 1 to the left, -1 to the right."}, s.side);
     visit(Field{"held", "", "Whether it held the ball in its latest step."}, s.held);
     visit(Field{"taken", "",
                 "Whether its latest kick was a set piece, so that it may not touch the ball again."},
@@ -73,6 +76,7 @@ struct Intent {
   double speed_mps = 0;     ///< at most
   double ball_room_m = 0;   ///< distance to keep from the ball on the way; 0: none
   bool keeps_clear = true;  ///< of robots
+  bool rests = true;        ///< whether near the target is near enough while a set piece is prepared
   bool kick = false;        ///< as soon as the ball lies right
   bool handler = false;
 };

@@ -12,7 +12,7 @@
 namespace sandlot::controllers::soccer_player {
 namespace {
 
-constexpr double heard_within_s = 1;
+constexpr double heard_within_s = 1.5;
 
 /// Finds a device that may be missing when it has the name by default.
 template <class Handle>
@@ -279,6 +279,7 @@ void SoccerPlayer::follow_game(const Observation& obs) {
   if (referee_)
     if (const auto heard = obs.get(*referee_); heard.valid && heard.fresh)
       hear_state(state.game, heard.message, team_, ball, now_s_);
+  settle(state.game, ball);
 }
 
 void SoccerPlayer::fill_scene(const Observation& obs) {
@@ -304,6 +305,16 @@ void SoccerPlayer::fill_scene(const Observation& obs) {
   scene.game = state.game;
   scene.game.spot = flip(state.game.spot);
   scene.open = is_open(state.game, ball.at, now_s_);
+  Memory& memory = state.memory;
+  const bool piece = state.game.piece != Piece::none && !scene.open;
+  if (piece && !holds_ && norm(scene.ball - scene.game.spot) < 0.3) {
+    scene.ball = scene.game.spot;
+    scene.ball_velocity = {};
+  }
+  // The side changes when the ball is clearly on it; all begin with the same one.
+  if (std::abs(scene.ball.y) > 0.4) memory.side = scene.ball.y > 0 ? -1 : 1;
+  else if (piece && state.game.piece == Piece::kickoff) memory.side = 1;
+  scene.side = memory.side;
   scene.mates.clear();
   for (const Mate& mate : state.mates) {
     if (now_s_ - mate.heard_s > heard_within_s) continue;
@@ -315,14 +326,27 @@ void SoccerPlayer::fill_scene(const Observation& obs) {
   scene.opponents.clear();
   for (const Obstacle& each : state.robots)
     scene.opponents.push_back({flip(each.at), flip(each.velocity), 2 * robot_radius_m});
-  Memory& memory = state.memory;
+  if (memory.taken) memory.taken = !is_free_again();
   if (holds_ && !memory.held) {
     memory.held_at = state.self.at;
     memory.held_s = now_s_;
     memory.until_s = -1e9;
-    memory.taken = false;
   }
   memory.held = holds_;
+}
+
+/// Whether another robot has touched the ball since this one took a set piece, as far as can be seen.
+bool SoccerPlayer::is_free_again() const {
+  constexpr double soon_s = 0.3, late_s = 10, touch_m = 0.5;
+  if (state.game.phase != Phase::running) return true;
+  const double since_s = now_s_ - state.memory.kicked_s;
+  if (since_s < soon_s) return false;
+  if (since_s > late_s) return true;
+  const auto touches = [&](Vec3 at) { return norm(at - scene_.ball) < touch_m; };
+  return std::any_of(scene_.mates.begin(), scene_.mates.end(),
+                     [&](const Mate& each) { return each.holds || touches(each.at); }) ||
+         std::any_of(scene_.opponents.begin(), scene_.opponents.end(),
+                     [&](const Moving& each) { return touches(each.at); });
 }
 
 void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
@@ -351,8 +375,14 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   memory.at = flip(memory.at);
   const Intent intent = decide(scene_, task, memory);
   memory.at = flip(memory.at);
-  const Vec3 target = flip(intent.target);
-  const double yaw = state.game.positive ? intent.yaw_rad : intent.yaw_rad + math::pi;
+  Vec3 target = flip(intent.target);
+  double yaw = state.game.positive ? intent.yaw_rad : intent.yaw_rad + math::pi;
+  if (state.game.phase == Phase::preparing && intent.rests) {  // near enough is in place: the referee waits until all stand
+    constexpr double near_m = 0.12, leave_m = 0.35, near_rad = 0.15;
+    const bool stands = norm(state.ordered_mps) < 0.05;
+    if (norm(target - state.self.at) < (stands ? leave_m : near_m)) target = state.self.at;
+    if (std::abs(math::wrap_angle(yaw - state.self.yaw_rad)) < near_rad) yaw = state.self.yaw_rad;
+  }
   const Limits limits{std::min(intent.speed_mps, spec.speed_mps),
                       holds_ ? std::min(4.0, spec.turn_speed_radps) : spec.turn_speed_radps,
                       spec.acceleration_mps2};

@@ -75,6 +75,7 @@ struct SoccerPlayer {
   void hear(const Observation& obs);
   void follow_game(const Observation& obs);
   void fill_scene(const Observation& obs);
+  bool is_free_again() const;
   void act(const Observation& obs, const Task& task, Command& cmd);
   void kick(const Observation& obs, Command& cmd);
   void tell(const Task& task, Vec3 target, Command& cmd);
