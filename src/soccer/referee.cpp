@@ -342,6 +342,12 @@ void Referee::step_taking() {
     return violated({touches.last, "moved the ball of the other team's set piece"});
   if (norm(way) > rules_.in_play_m) {
     state_.in_play = true;
+    if (!touches.taker &&
+        state_.team >= 0) {  // a kicker moved it, without a touch: the nearest robot took it
+      state_.touches.taker = nearest_taker(scene());
+      state_.touches.taken_m = state_.spot_m;
+      state_.touches.last = state_.touches.taker;
+    }
     output_->changed = true;
     return decide(Law::in_play, state_.team, touches.taker, "the ball has moved");
   }

@@ -51,10 +51,15 @@ void choose_aim(const Scene& scene, Memory& memory) {
     aim(memory, kind, shot.at, std::clamp(0.6 * room / std::max(0.5, way), 0.03, 0.2),
         scene.keys->shot_speed_mps, until);
   };
+  // Before the way with the ball is over it must go, well aimed or not.
+  constexpr double last_way_m = 2.1;
+  if (scene.holds && norm(scene.me - (scene.game.positive ? 1.0 : -1.0) * memory.held_at) > last_way_m)
+    return aim(memory, Aim::clearance, goal, 1.2, scene.keys->shot_speed_mps, until);
   if (scene.keys->play == Play::run_and_kick)
     return aim(memory, Aim::shot, goal, std::clamp(0.8 / std::max(0.5, way), 0.05, 0.3),
                scene.keys->shot_speed_mps, until);
-  const double carried = scene.holds ? norm(scene.me - memory.held_at) : 0;
+  const double carried = scene.holds ? norm(scene.me - (scene.game.positive ? 1.0 : -1.0) * memory.held_at)
+                                     : 0;
   double nearest = 9;
   for (const Moving& each : scene.opponents) nearest = std::min(nearest, norm(each.at - scene.ball));
   const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5);
@@ -280,7 +285,7 @@ Intent decide(const Scene& scene, const Task& task, Memory& memory) {
   if (game.phase == Phase::stopped || game.out) {
     // The ball comes to where it left the field: nobody may stand there.
     const double x = scene.goal_x() - 0.4, y = 0.5 * scene.field.width_m - 0.15;
-    const Vec3 spot{std::clamp(scene.ball.x, -x, x), std::clamp(scene.ball.y, -y, y), 0};
+    const Vec3 spot{std::clamp(game.spot.x, -x, x), std::clamp(game.spot.y, -y, y), 0};
     const Vec3 off = flat(scene.me - spot);
     const double distance = norm(off);
     if (!scene.ball_known || game.out || distance > 1.1) return stand_at(scene, "stop", scene.me, 0.5, 0);

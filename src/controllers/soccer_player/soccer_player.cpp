@@ -370,6 +370,23 @@ void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
   ++memory.kicks;
 }
 
+/// The velocity with which robots of the other team are met slowly: to push them is a foul.
+Vec3 SoccerPlayer::gentle(Vec3 velocity) const {
+  constexpr double touch_mps = 0.35, braking_mps2 = 1.3, margin_m = 0.1;
+  for (const Obstacle& each : state.robots) {
+    const Vec3 off = flat(each.at - state.self.at);
+    const double distance = norm(off);
+    if (distance < 1e-6) continue;
+    const Vec3 n = (1 / distance) * off;
+    const double gap = std::max(0.0, distance - 2 * robot_radius_m - margin_m);
+    const double most = touch_mps + std::sqrt(2 * braking_mps2 * gap), towards = dot(velocity, n);
+    // Only what lies ahead: who passes beside it need not brake.
+    const double aside = std::abs(velocity.x * n.y - velocity.y * n.x) * distance;
+    if (towards > most && aside < 0.6 * norm(velocity)) velocity -= (towards - most) * n;
+  }
+  return velocity;
+}
+
 void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   Memory& memory = state.memory;
   memory.at = flip(memory.at);
@@ -377,7 +394,8 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   memory.at = flip(memory.at);
   Vec3 target = flip(intent.target);
   double yaw = state.game.positive ? intent.yaw_rad : intent.yaw_rad + math::pi;
-  if (state.game.phase == Phase::preparing && intent.rests) {  // near enough is in place: the referee waits until all stand
+  if (state.game.phase == Phase::preparing &&
+      intent.rests) {  // near enough is in place: the referee waits until all stand
     constexpr double near_m = 0.12, leave_m = 0.35, near_rad = 0.15;
     const bool stands = norm(state.ordered_mps) < 0.05;
     if (norm(target - state.self.at) < (stands ? leave_m : near_m)) target = state.self.at;
@@ -401,7 +419,7 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
   if (intent.ball_room_m > 0 && scene_.ball_known) add(flip(scene_.ball), {}, intent.ball_room_m);
   const Vec3 wanted = velocity_to(state.self.at, target, flip(intent.moves_on), limits);
   // Wheels slip when speeds change too fast.
-  const Vec3 change = around(state.self.at, wanted, discs_) - state.ordered_mps;
+  const Vec3 change = gentle(around(state.self.at, wanted, discs_)) - state.ordered_mps;
   const double most = 1.3 * spec.acceleration_mps2 * dt_s_, size = norm(change);
   state.ordered_mps += size > most ? (most / size) * change : change;
   msg::Twist twist = drive(state.self, state.ordered_mps, yaw, limits, spec.holonomic);

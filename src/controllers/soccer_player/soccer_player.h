@@ -76,6 +76,7 @@ struct SoccerPlayer {
   void follow_game(const Observation& obs);
   void fill_scene(const Observation& obs);
   bool is_free_again() const;
+  Vec3 gentle(Vec3 velocity) const;
   void act(const Observation& obs, const Task& task, Command& cmd);
   void kick(const Observation& obs, Command& cmd);
   void tell(const Task& task, Vec3 target, Command& cmd);
