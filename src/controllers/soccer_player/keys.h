@@ -120,9 +120,9 @@ struct Style {
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {0.3, 3, 1.5, 0.7, 0.45, 0, true, true};
-    case Play::dribbling: return {0.3, 4, 1.8, 0.7, 0.45, 0, false, true};
-    case Play::pressing: return {0.3, 4, 1.5, 0.7, 0.5, 1, true, true};
+    case Play::passing: return {0.3, 3, 1.1, 0.7, 0.45, 0, true, true};
+    case Play::dribbling: return {0.3, 4, 1.3, 0.7, 0.45, 0, false, true};
+    case Play::pressing: return {0.3, 4, 1.1, 0.7, 0.5, 1, true, true};
     case Play::run_and_kick: break;
   }
   return {0, 1e9, 0.5, 0, 0.3, 0, false, false};

@@ -52,7 +52,7 @@ void choose_aim(const Scene& scene, Memory& memory) {
         scene.keys->shot_speed_mps, until);
   };
   // Before the way with the ball is over it must go, well aimed or not.
-  constexpr double last_way_m = 2.1;
+  constexpr double last_way_m = 1.6;
   if (scene.holds && norm(scene.me - (scene.game.positive ? 1.0 : -1.0) * memory.held_at) > last_way_m)
     return aim(memory, Aim::clearance, goal, 1.2, scene.keys->shot_speed_mps, until);
   if (scene.keys->play == Play::run_and_kick)

@@ -372,17 +372,18 @@ void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
 
 /// The velocity with which robots of the other team are met slowly: to push them is a foul.
 Vec3 SoccerPlayer::gentle(Vec3 velocity) const {
-  constexpr double touch_mps = 0.35, braking_mps2 = 1.3, margin_m = 0.1;
+  constexpr double touch_mps = 0.3, braking_mps2 = 1.1, margin_m = 0.2, lag_s = 0.3;
   for (const Obstacle& each : state.robots) {
     const Vec3 off = flat(each.at - state.self.at);
     const double distance = norm(off);
     if (distance < 1e-6) continue;
     const Vec3 n = (1 / distance) * off;
-    const double gap = std::max(0.0, distance - 2 * robot_radius_m - margin_m);
+    const double comes = std::max(0.0, -dot(each.velocity, n));
+    const double gap = std::max(0.0, distance - 2 * robot_radius_m - margin_m - lag_s * comes);
     const double most = touch_mps + std::sqrt(2 * braking_mps2 * gap), towards = dot(velocity, n);
     // Only what lies ahead: who passes beside it need not brake.
     const double aside = std::abs(velocity.x * n.y - velocity.y * n.x) * distance;
-    if (towards > most && aside < 0.6 * norm(velocity)) velocity -= (towards - most) * n;
+    if (towards > most && aside < 0.75 * norm(velocity)) velocity -= (towards - most) * n;
   }
   return velocity;
 }

@@ -89,7 +89,7 @@ class TeamRobots {
 
   Status add_robot(int number, const Read& software, const Node& mine, std::vector<std::string>& used) {
     const auto index = static_cast<std::size_t>(number - 1);
-    const Place place = mine.place();
+    const Place& place = mine.place();
     Node robot = keys_.robot.is_map() ? keys_.robot : Node::map(place);
     merge(robot, mine);
     Node vars = Node::map(place);
