@@ -1,5 +1,5 @@
 # What `cmake --install` leaves: bin/sandlot, lib/libsandlot.so, the headers for users' own controllers and programs, the CMake
-# packages and the pkg-config file, clients for other programs, the models, worlds and scenarios, documentation and examples. Everything finds everything relative to itself.
+# packages and the pkg-config file, clients for other programs, the models, worlds, scenarios and teams, documentation and examples. Everything finds everything relative to itself.
 include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
@@ -10,7 +10,7 @@ set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
   -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
-install(DIRECTORY models worlds scenarios templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS)
+install(DIRECTORY models worlds scenarios teams templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY clients/cpp/sandlot_client DESTINATION include)
 install(FILES cmake/sandlot_clientConfig.cmake DESTINATION lib/cmake/sandlot_client)
