@@ -107,11 +107,15 @@ struct Mate {
 /// A robot that was seen, of either team.
 struct Obstacle {
   Vec3 at, velocity;
+  double var_p = 0.01, cov_pv = 0, var_v = 1;
   double seen_s = 0;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"at", "m", "Place of the robot."}, s.at);
     visit(Field{"velocity", "m/s", "Velocity of the robot."}, s.velocity);
+    visit(Field{"var_p", "m^2", "Variance of the place along each axis."}, s.var_p);
+    visit(Field{"cov_pv", "m^2/s", "Covariance of place and velocity along each axis."}, s.cov_pv);
+    visit(Field{"var_v", "m^2/s^2", "Variance of the velocity along each axis."}, s.var_v);
     visit(Field{"seen", "s", "Time when it was seen last."}, s.seen_s);
   }
 };

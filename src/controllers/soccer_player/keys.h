@@ -110,22 +110,20 @@ struct Keys {
 
 /// What the ways of playing differ in.
 struct Style {
-  double shot_clearance_m;  ///< least room beside opponents in front of a shot
-  double pass_gain_m;       ///< least gain along the field of a pass
-  double dribble_m;         ///< longest way with the ball
-  double pressed_m;         ///< an opponent nearer to the ball than that leaves no time
-  double line;              ///< depth of the defence: 0 at the goal, 1 at the ball
-  int pressers;             ///< players that go for a ball of the opponents beside the attacker
-  bool passes, places;      ///< whether it passes; whether the others take places
+  double passes, carries,
+      pushes;    ///< factors on the worth of passes, of carrying the ball and of pushing it on
+  double line;   ///< depth of the defence: 0 at the goal, 1 at the ball
+  int pressers;  ///< players that go for a ball of the opponents beside the attacker
+  bool places;   ///< whether those without the ball take places
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {0.3, 3, 1.1, 0.7, 0.45, 0, true, true};
-    case Play::dribbling: return {0.3, 4, 1.3, 0.7, 0.45, 0, false, true};
-    case Play::pressing: return {0.3, 4, 1.1, 0.7, 0.5, 1, true, true};
+    case Play::passing: return {1.2, 1, 1, 0.45, 0, true};
+    case Play::dribbling: return {0.7, 1.2, 1.3, 0.45, 0, true};
+    case Play::pressing: return {1, 1, 1, 0.55, 1, true};
     case Play::run_and_kick: break;
   }
-  return {0, 1e9, 0.5, 0, 0.3, 0, false, false};
+  return {0, 0, 0, 0.3, 0, false};
 }
 
 }  // namespace sandlot::controllers::soccer_player

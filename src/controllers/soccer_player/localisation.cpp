@@ -88,8 +88,13 @@ std::optional<Fix> place_from_goal(const Self& self, const soccer::Dimensions& f
   const double range = norm(seen);
   if (range < 0.5) return {};
   const double goal_x = 0.5 * field.length_m + 0.5 * field.goal_depth_m;
-  // Who stands on the field sees the goal at positive x ahead and the other one behind.
-  const double side = seen.x > 0 ? 1 : -1;
+  // Who stands on the field sees the goal at positive x ahead and the other one behind. Beside a goal that does not hold: there what
+  // it believed before tells the two apart.
+  double side = seen.x > 0 ? 1 : -1;
+  if (self.known || self.refused > 0) {
+    const auto off = [&](double each) { return norm(Vec3{each * goal_x, 0, 0} - seen - self.at); };
+    side = off(1) < off(-1) ? 1 : -1;
+  }
   Fix fix{Vec3{side * goal_x, 0, 0} - seen};
   if (std::abs(fix.at.x) > 0.5 * field.length_m + 1.5 || std::abs(fix.at.y) > 0.5 * field.width_m + 2)
     return {};

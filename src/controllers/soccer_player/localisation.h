@@ -24,7 +24,8 @@ struct Fix {
 };
 void fix_place(Self& self, const Fix& fix);
 
-/// Place of the robot from a goal that it sees: the middle of the goal stands at (+-goal_x, 0).
+/// Place of the robot from a goal that it sees: the middle of the goal stands at (+-goal_x, 0), the nearer to what it believed, else
+/// the one ahead.
 /// @param seen_B  the middle of the goal in the robot's frame
 /// @return none when no end of the field fits
 std::optional<Fix> place_from_goal(const Self& self, const soccer::Dimensions& field, Vec3 seen_B);

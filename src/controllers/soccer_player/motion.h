@@ -10,6 +10,7 @@
 
 #include "controllers/soccer_player/beliefs.h"
 #include "messages/messages.h"
+#include "soccer/field.h"
 
 namespace sandlot::controllers::soccer_player {
 
@@ -26,5 +27,8 @@ Vec3 velocity_to(Vec3 from, Vec3 to, Vec3 moves_on, const Limits& limits);
 Vec3 around(Vec3 from, Vec3 wanted, std::span<const Moving> discs);
 /// @param yaw_rad  heading to have; of a drive that does not move sideways only when it stands
 msg::Twist drive(const Self& self, Vec3 velocity, double yaw_rad, const Limits& limits, bool holonomic);
+
+/// The target, or where to go before: who stands in a goal or beside it comes back to the field first, straight along it.
+Vec3 beside_goals(const soccer::Dimensions& field, Vec3 from, Vec3 to);
 
 }  // namespace sandlot::controllers::soccer_player

@@ -4,93 +4,13 @@
 
 #include "base/math.h"
 #include "control/steering.h"
+#include "controllers/soccer_player/aims.h"
 #include "controllers/soccer_player/tracking.h"
 
 namespace sandlot::controllers::soccer_player {
 namespace {
 
 double heading(Vec3 v) { return math::atan2(v.y, v.x); }
-
-/// Speed with which a ball must be kicked to arrive after a way with 1.5 m/s: a kicked ball slides and loses two fifths until it rolls.
-double pass_speed(const Scene& scene, double way_m) {
-  return std::clamp(std::sqrt(2.25 + 2 * rolling_mps2 * way_m) / 0.6, scene.keys->pass_speed_mps, 8.0);
-}
-
-void aim(Memory& memory, Aim kind, Vec3 at, double tolerance_rad, double speed_mps, double until_s) {
-  memory.aim = kind;
-  memory.at = at;
-  memory.tolerance_rad = tolerance_rad;
-  memory.speed_mps = speed_mps;
-  memory.until_s = until_s;
-}
-
-/// The team-mate to pass to; none: null.
-const Mate* receiver(const Scene& scene, double least_gain_m) {
-  const Mate* best = nullptr;
-  double most = 0;
-  for (const Mate& mate : scene.mates) {
-    if (mate.number == scene.keys->keeper) continue;
-    const Vec3 to = mate.at + 0.4 * mate.velocity;
-    const double way = norm(to - scene.ball), gain = to.x - scene.ball.x;
-    if (way < 1.8 || way > 10 || gain < least_gain_m) continue;
-    const double room = room_beside(scene, scene.ball, to);
-    if (room < 0.55) continue;
-    const double value = 1 + 0.3 * (gain - least_gain_m) + std::min(room, 1.5) - 0.1 * way;
-    if (value > most) most = value, best = &mate;
-  }
-  return best;
-}
-
-void choose_aim(const Scene& scene, Memory& memory) {
-  const double until = scene.now_s + 0.4;
-  const Vec3 goal{scene.goal_x(), 0, 0};
-  const double way = norm(goal - scene.ball);
-  const Shot shot = best_shot(scene, scene.ball);
-  const auto shoot = [&](Aim kind) {
-    const double room = std::clamp(shot.room_m, 0.15, 0.5 * scene.field.goal_width_m);
-    aim(memory, kind, shot.at, std::clamp(0.6 * room / std::max(0.5, way), 0.03, 0.2),
-        scene.keys->shot_speed_mps, until);
-  };
-  // Before the way with the ball is over it must go, well aimed or not.
-  constexpr double last_way_m = 1.6;
-  if (scene.holds && norm(scene.me - (scene.game.positive ? 1.0 : -1.0) * memory.held_at) > last_way_m)
-    return aim(memory, Aim::clearance, goal, 1.2, scene.keys->shot_speed_mps, until);
-  if (scene.keys->play == Play::run_and_kick)
-    return aim(memory, Aim::shot, goal, std::clamp(0.8 / std::max(0.5, way), 0.05, 0.3),
-               scene.keys->shot_speed_mps, until);
-  const double carried = scene.holds ? norm(scene.me - (scene.game.positive ? 1.0 : -1.0) * memory.held_at)
-                                     : 0;
-  double nearest = 9;
-  for (const Moving& each : scene.opponents) nearest = std::min(nearest, norm(each.at - scene.ball));
-  const bool must = scene.holds && (carried > scene.style.dribble_m || scene.now_s - memory.held_s > 5);
-  // Who is pressed has no time to aim: away with it, past the opponent.
-  if (nearest < scene.style.pressed_m) {
-    shoot(way < 1.4 * scene.keys->shot_range_m ? Aim::shot : Aim::clearance);
-    memory.tolerance_rad = std::clamp(0.8 / std::max(0.5, way), 0.06, 0.3);
-    memory.until_s = scene.now_s + 0.2;
-    return;
-  }
-  if (way < scene.keys->shot_range_m && shot.room_m >= scene.style.shot_clearance_m) return shoot(Aim::shot);
-  if ((scene.style.passes && nearest < 2) || must)
-    if (const Mate* const mate = receiver(scene, must ? -2 : scene.style.pass_gain_m)) {
-      const Vec3 to = mate->at + 0.4 * mate->velocity;
-      return aim(memory, Aim::pass, to, 0.07, pass_speed(scene, norm(to - scene.ball)), until);
-    }
-  if (scene.has_handler && !must) {
-    // Of five directions towards the goal the one with the most room for three metres.
-    Vec3 best = goal;
-    double most = -1e9;
-    for (int k = -2; k <= 2; ++k) {
-      const auto [s, c] = math::sincos(0.45 * k);
-      const Vec3 to = scene.ball + 3.0 * turned(normalised(goal - scene.ball), s, c);
-      if (std::abs(to.y) > 0.5 * scene.field.width_m - 0.4) continue;
-      const double value = std::min(1.2, room_beside(scene, scene.ball, to)) - 0.15 * std::abs(k);
-      if (value > most) most = value, best = to;
-    }
-    return aim(memory, Aim::dribble, best, 0, 0, until);
-  }
-  shoot(way < 1.4 * scene.keys->shot_range_m ? Aim::shot : Aim::clearance);
-}
 
 /// Gets the ball and plays it to where the memory aims.
 Intent play_ball(const Scene& scene, Memory& memory) {
@@ -109,9 +29,11 @@ Intent play_ball(const Scene& scene, Memory& memory) {
       out.target = scene.me + 1.5 * normalised(memory.at - scene.me);
       out.speed_mps = 2.2;
     } else {
-      out.name = memory.aim == Aim::pass ? "pass" : memory.aim == Aim::shot ? "shoot" : "clear";
+      out.name = name_of(memory.aim);
       out.target = scene.me + 0.15 * direction;
       out.speed_mps = 0.5;
+      // The ball has the robot's velocity, too.
+      out.yaw_rad = heading(memory.speed_mps * direction - scene.velocity);
     }
     return out;
   }
@@ -138,7 +60,7 @@ Intent play_ball(const Scene& scene, Memory& memory) {
     return out;
   }
   if (right_behind) {
-    out.name = memory.aim == Aim::pass ? "pass" : "shoot";
+    out.name = name_of(memory.aim);
     out.target = ball + 0.3 * direction;
     out.moves_on = scene.ball_velocity;
     out.keeps_clear = false;
@@ -189,38 +111,16 @@ Intent keep(const Scene& scene, Memory& memory, bool may_leave) {
   const double mine = meet(scene, scene.me).after_s;
   if (may_leave &&
       (scene.holds || (near && norm(scene.ball_velocity) < 1.5 && (mine < sooner || ball.x < 0.9 - gx)))) {
-    // Away: to a mate, else to the side that is free.
-    if (const Mate* const mate = receiver(scene, 1.5); mate != nullptr && scene.now_s > memory.until_s)
-      aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - ball)), scene.now_s + 0.4);
-    else if (scene.now_s > memory.until_s || memory.aim == Aim::none || memory.aim == Aim::dribble)
-      aim(memory, Aim::clearance, Vec3{0, ball.y > 0 ? 4.0 : -4.0, 0}, 0.4, scene.keys->shot_speed_mps,
-          scene.now_s + 0.4);
+    if (scene.now_s > memory.until_s || memory.aim == Aim::none || memory.aim == Aim::dribble)
+      aim_of_keeper(scene, memory);
     return play_ball(scene, memory);
   }
   const Vec3 to_ball = normalised(ball - goal);
   Vec3 place = goal + 0.75 * to_ball;
   place.x = std::max(place.x, 0.4 - gx);
   place.y = std::clamp(place.y, 0.15 - half, half - 0.15);
-  return stand_at(scene, "keep", place, scene.keys->speed_mps, 0);
-}
-
-/// Aim of the set piece: where the one that offers itself will stand, else any free team-mate, else the goal.
-void aim_of_piece(const Scene& scene, Memory& memory) {
-  const double until = scene.now_s + 0.5;
-  const auto shoot = [&](Aim kind, double tolerance_rad) {
-    aim(memory, kind, best_shot(scene, scene.ball).at, tolerance_rad, scene.keys->shot_speed_mps, until);
-  };
-  if (scene.game.piece == Piece::penalty || scene.keys->play == Play::run_and_kick)
-    return shoot(Aim::shot, 0.06);
-  for (const Mate& mate : scene.mates) {
-    const double way = norm(mate.target - scene.ball);
-    if (mate.role == Role::supporter && way > 1.8 && way < 6 &&
-        room_beside(scene, scene.ball, mate.target) > 0.5)
-      return aim(memory, Aim::pass, mate.target, 0.08, pass_speed(scene, way), until);
-  }
-  if (const Mate* const mate = receiver(scene, -6))
-    return aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - scene.ball)), until);
-  shoot(Aim::clearance, 0.1);
+  // On its way home it stays clear of a ball that waits for its set piece.
+  return stand_at(scene, "keep", place, scene.keys->speed_mps, may_leave ? 0 : 0.8);
 }
 
 /// Own set piece: the taker stands behind the ball until play may go on, comes straight, kicks once, and leaves the ball alone.
@@ -250,34 +150,6 @@ Intent take(const Scene& scene, Memory& memory) {
 }
 
 }  // namespace
-
-double room_beside(const Scene& scene, Vec3 from, Vec3 to) {
-  const Vec3 way = flat(to - from);
-  const double length = norm(way);
-  double room = 2;
-  if (length < 1e-6) return room;
-  const Vec3 u = (1 / length) * way;
-  for (const Moving& each : scene.opponents) {
-    const Vec3 off = flat(each.at - from);
-    const double along = dot(off, u);
-    if (along < 0.1 || along > length + 0.3) continue;
-    room = std::min(room, std::abs(off.x * u.y - off.y * u.x));
-  }
-  return room;
-}
-
-Shot best_shot(const Scene& scene, Vec3 from) {
-  const double most_y = 0.5 * scene.field.goal_width_m - 0.25;
-  Shot best{{scene.goal_x() + 0.2, 0, 0}, -1};
-  double most = -1e9;
-  for (int k = -3; k <= 3; ++k) {
-    const Vec3 at{scene.goal_x() + 0.2, most_y * k / 3, 0};
-    const double room = room_beside(scene, from, at) - 0.25;
-    const double value = std::min(0.7, room) - 0.03 * std::abs(k);
-    if (value > most) most = value, best = {at, room};
-  }
-  return best;
-}
 
 Intent decide(const Scene& scene, const Task& task, Memory& memory) {
   const Game& game = scene.game;

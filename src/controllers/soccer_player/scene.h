@@ -28,13 +28,11 @@ struct Scene {
   bool is_keeper() const { return number == keys->keeper; }
 };
 
-enum class Aim : std::uint8_t { none, shot, pass, dribble, clearance };
+enum class Aim : std::uint8_t { none, shot, pass, dribble, push, clearance };
 inline std::span<const EnumName<Aim>> enum_names(Aim) {
-  static constexpr EnumName<Aim> names[] = {{"none", Aim::none},
-                                            {"shot", Aim::shot},
-                                            {"pass", Aim::pass},
-                                            {"dribble", Aim::dribble},
-                                            {"clearance", Aim::clearance}};
+  static constexpr EnumName<Aim> names[] = {{"none", Aim::none}, {"shot", Aim::shot},
+                                            {"pass", Aim::pass}, {"dribble", Aim::dribble},
+                                            {"push", Aim::push}, {"clearance", Aim::clearance}};
   return names;
 }
 
@@ -53,7 +51,7 @@ struct Memory {
     visit(Field{"role", "", "Present role."}, s.role);
     visit(Field{"aim", "", "Aim with the ball."}, s.aim);
     visit(Field{"at", "m", "Place that it aims at."}, s.at);
-    visit(Field{"held_at", "m", "Place where it got the ball."}, s.held_at);
+    visit(Field{"held_at", "m", "Place of the ball where it got it."}, s.held_at);
     visit(Field{"until", "s", "Time until which it keeps its aim."}, s.until_s);
     visit(Field{"held_since", "s", "Time when it got the ball."}, s.held_s);
     visit(Field{"kicked", "s", "Time of its latest kick."}, s.kicked_s);

@@ -124,15 +124,16 @@ void SoccerPlayer::sense_self(const Observation& obs) {
   sin_ = s, cos_ = c;
 }
 
-void SoccerPlayer::see_other(Vec3 at_F) {
+void SoccerPlayer::see_other(Vec3 at_F, double std_m) {
   if (std::abs(at_F.x) > 0.5 * field_.length_m + 0.8 || std::abs(at_F.y) > 0.5 * field_.width_m + 0.8) return;
   const Vec3 off_self = at_F - state.self.at;
   if (dot(off_self, off_self) < 0.04) return;
+  const double near_m = std::min(1.2, 0.5 + 2 * std_m);
   for (const Mate& mate : state.mates) {
     const Vec3 off = at_F - (mate.at + std::min(0.3, now_s_ - mate.heard_s) * mate.velocity);
-    if (now_s_ - mate.heard_s < heard_within_s && dot(off, off) < 0.36) return;
+    if (now_s_ - mate.heard_s < heard_within_s && dot(off, off) < near_m * near_m) return;
   }
-  see_robot(state.robots, at_F, now_s_);
+  see_robot(state.robots, at_F, std_m, now_s_);
 }
 
 void SoccerPlayer::see(std::string_view label, Vec3 at_B, double range_m) {
@@ -142,7 +143,7 @@ void SoccerPlayer::see(std::string_view label, Vec3 at_B, double range_m) {
   } else if (state.self.known && label == "ball") {
     see_ball(state.ball, to_field(at_B), 0.02 + 0.04 * range_m, now_s_);
   } else if (state.self.known && label == "robot") {
-    see_other(to_field(at_B));
+    see_other(to_field(at_B), 0.04 + 0.04 * range_m);
   }
 }
 
@@ -161,7 +162,7 @@ void SoccerPlayer::see_objects(const Observation& obs) {
         if (!is_finite(each.pose)) continue;
         if (each.label == "ball")
           see_ball(state.ball, each.pose.p, std::max(0.02, each.position_std), now_s_);
-        else if (each.label == "robot") see_other(flat(each.pose.p));
+        else if (each.label == "robot") see_other(flat(each.pose.p), std::max(0.03, each.position_std));
       }
 }
 
@@ -212,7 +213,7 @@ void SoccerPlayer::scan(const Observation& obs) {
     if (range < 0.25 || range > near_m) return;
     const Vec3 at = to_field((1 + 0.15 / range) * middle_B);
     if (std::abs(at.x) < 0.5 * field_.length_m - 0.15 && std::abs(at.y) < 0.5 * field_.width_m + 0.5)
-      see_other(at);
+      see_other(at, 0.06);
   };
   if (segments_)
     if (const auto seen = obs.get(*segments_); seen.valid && seen.fresh)
@@ -328,7 +329,7 @@ void SoccerPlayer::fill_scene(const Observation& obs) {
     scene.opponents.push_back({flip(each.at), flip(each.velocity), 2 * robot_radius_m});
   if (memory.taken) memory.taken = !is_free_again();
   if (holds_ && !memory.held) {
-    memory.held_at = state.self.at;
+    memory.held_at = state.ball.at;
     memory.held_s = now_s_;
     memory.until_s = -1e9;
   }
@@ -359,11 +360,11 @@ void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
   if (!holds_ && (ball_B.x < 0 || ball_B.x > spec.kick_reach_m || std::abs(ball_B.y) > spec.kick_width_m))
     return;
   const Vec3 to = memory.at - state.ball.at;
-  const double error = math::wrap_angle(math::atan2(to.y, to.x) - state.self.yaw_rad);
+  // The ball has the robot's velocity, too.
+  const Vec3 wanted = memory.speed_mps * normalised(flat(to)) - flat(state.self.velocity);
+  const double error = math::wrap_angle(math::atan2(wanted.y, wanted.x) - state.self.yaw_rad);
   if (std::abs(error) > memory.tolerance_rad) return;
-  // The ball has the robot's speed already.
-  const double speed = std::max(
-      0.5, memory.speed_mps - (cos_ * state.self.velocity.x + sin_ * state.self.velocity.y));
+  const double speed = std::max(0.5, norm(wanted));
   cmd.set(*kicker_, msg::Float64{ball_mass_kg * speed});
   memory.kicked_s = now_s_;
   memory.taken = scene_.game.piece != Piece::none && scene_.game.whose == Whose::ours;
@@ -372,14 +373,15 @@ void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
 
 /// The velocity with which robots of the other team are met slowly: to push them is a foul.
 Vec3 SoccerPlayer::gentle(Vec3 velocity) const {
-  constexpr double touch_mps = 0.3, braking_mps2 = 1.1, margin_m = 0.2, lag_s = 0.3;
+  constexpr double touch_mps = 0.35, braking_mps2 = 1.4, margin_m = 0.1, lag_s = 0.25;
   for (const Obstacle& each : state.robots) {
     const Vec3 off = flat(each.at - state.self.at);
     const double distance = norm(off);
     if (distance < 1e-6) continue;
     const Vec3 n = (1 / distance) * off;
-    const double comes = std::max(0.0, -dot(each.velocity, n));
-    const double gap = std::max(0.0, distance - 2 * robot_radius_m - margin_m - lag_s * comes);
+    const double comes = std::max(0.0, -dot(each.velocity, n)),
+                 goes = std::max(0.0, dot(state.self.velocity, n));
+    const double gap = std::max(0.0, distance - 2 * robot_radius_m - margin_m - lag_s * (comes + goes));
     const double most = touch_mps + std::sqrt(2 * braking_mps2 * gap), towards = dot(velocity, n);
     // Only what lies ahead: who passes beside it need not brake.
     const double aside = std::abs(velocity.x * n.y - velocity.y * n.x) * distance;
@@ -402,8 +404,12 @@ void SoccerPlayer::act(const Observation& obs, const Task& task, Command& cmd) {
     if (norm(target - state.self.at) < (stands ? leave_m : near_m)) target = state.self.at;
     if (std::abs(math::wrap_angle(yaw - state.self.yaw_rad)) < near_rad) yaw = state.self.yaw_rad;
   }
-  const Limits limits{std::min(intent.speed_mps, spec.speed_mps),
-                      holds_ ? std::min(4.0, spec.turn_speed_radps) : spec.turn_speed_radps,
+  target = beside_goals(field_, state.self.at, target);
+  double speed = std::min(intent.speed_mps, spec.speed_mps);
+  // A ball that waits for its set piece is passed slowly.
+  if (state.game.phase == Phase::preparing && norm(flat(scene_.ball - scene_.me)) < 1.8)
+    speed = std::min(speed, 1.1);
+  const Limits limits{speed, holds_ ? std::min(4.0, spec.turn_speed_radps) : spec.turn_speed_radps,
                       spec.acceleration_mps2};
   discs_.clear();
   const auto add = [&](Vec3 at, Vec3 velocity, double radius) {

@@ -71,7 +71,7 @@ struct SoccerPlayer {
   void scan(const Observation& obs);
   void match_goals(const msg::LaserScan& scan);
   void see(std::string_view label, Vec3 at_B, double range_m);
-  void see_other(Vec3 at_F);
+  void see_other(Vec3 at_F, double std_m);
   void hear(const Observation& obs);
   void follow_game(const Observation& obs);
   void fill_scene(const Observation& obs);

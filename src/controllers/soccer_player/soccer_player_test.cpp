@@ -4,6 +4,7 @@
 
 #include "base/math.h"
 #include "base/random.h"
+#include "controllers/soccer_player/aims.h"
 #include "controllers/soccer_player/game.h"
 #include "controllers/soccer_player/localisation.h"
 #include "controllers/soccer_player/packet.h"
@@ -286,6 +287,190 @@ TEST(SoccerPlayer, ADriveThatCannotMoveSidewaysTurnsFirst) {
   EXPECT_EQ(turning.linear.y, 0);
   EXPECT_EQ(turning.linear.x, 0);
   EXPECT_GT(turning.angular.z, 1);
+}
+
+// ------------------------------------------------------------------------------------------------------------ aims
+
+/// A player with the ball at `at` in a game that runs, looking at the goal of the opponents.
+struct WithBall {
+  Keys keys;
+  Scene scene;
+  Memory memory;
+
+  explicit WithBall(Play play, Vec3 at) {
+    keys.play = play;
+    scene.keys = &keys;
+    scene.field = soccer::dimensions_of(keys.size);
+    scene.style = style_of(play);
+    scene.now_s = 100;
+    scene.number = 2;
+    scene.ball = at;
+    scene.me = at - Vec3{keys.front_m, 0, 0};
+    scene.ball_known = scene.holds = scene.has_handler = true;
+    memory.held_at = at;
+  }
+  WithBall& opponent(double x, double y) {
+    scene.opponents.push_back({{x, y, 0}, {}, 2 * robot_radius_m});
+    return *this;
+  }
+  WithBall& mate(std::int32_t number, double x, double y) {
+    Mate& each = scene.mates.emplace_back();
+    each.number = number;
+    each.at = {x, y, 0};
+    return *this;
+  }
+  Aim aim() {
+    choose_aim(scene, memory);
+    return memory.aim;
+  }
+};
+
+TEST(SoccerPlayer, RoomBesideABallIsWhatOpponentsDoNotReach) {
+  WithBall one(Play::passing, {});
+  one.opponent(2, 1);
+  // The ball is beside it after 2 m / 4 m/s = 0.5 s, of which 0.15 s pass before it starts with 1.2 m/s^2.
+  EXPECT_NEAR(room_beside(one.scene, {}, {5, 0, 0}, 4, 0.36, 1.2), 1 - 0.36 - 0.6 * 0.35 * 0.35, 1e-12);
+  EXPECT_EQ(room_beside(one.scene, {}, {-5, 0, 0}, 4, 0.36, 1.2), 2) << "it stands behind";
+  EXPECT_EQ(room_beside(one.scene, {}, {1, 0, 0}, 4, 0.36, 1.2), 2) << "it stands beyond the end";
+}
+
+TEST(SoccerPlayer, AShotGoesPastTheKeeperAndIsBetterFromNear) {
+  WithBall empty(Play::passing, {8, 0, 0});
+  EXPECT_EQ(best_shot(empty.scene, empty.scene.ball).at.y, 0);
+  EXPECT_EQ(best_shot(empty.scene, empty.scene.ball).chance, 1);
+  WithBall kept(Play::passing, {8, 0, 0});
+  kept.opponent(10.5, 0.4);
+  const Shot near = best_shot(kept.scene, {8, 0, 0}), far = best_shot(kept.scene, {1, 0, 0});
+  EXPECT_LT(near.at.y, -0.3) << "on the side that the keeper leaves free";
+  EXPECT_GT(near.chance, 0.9);
+  EXPECT_LT(far.chance, 0.5 * near.chance) << "from far the keeper has time";
+}
+
+TEST(SoccerPlayer, WaysOfPlayingDoDifferentThingsWithTheSameBall) {
+  const auto midfield = [](Play play) {
+    WithBall one(play, {-2, 0, 0});
+    one.opponent(-0.6, 0.1).mate(3, 2, 4);
+    return one.aim();
+  };
+  EXPECT_EQ(midfield(Play::run_and_kick), Aim::shot);
+  EXPECT_EQ(midfield(Play::passing), Aim::pass);
+  EXPECT_NE(midfield(Play::dribbling), Aim::pass);
+  for (const Play play : {Play::passing, Play::dribbling, Play::pressing, Play::run_and_kick}) {
+    WithBall free(play, {8, 0.5, 0});
+    EXPECT_EQ(free.aim(), Aim::shot) << "an open goal";
+  }
+}
+
+TEST(SoccerPlayer, CarriesTheBallWhereThereIsRoomButNotTooFar) {
+  WithBall one(Play::dribbling, {-3, 0, 0});
+  EXPECT_EQ(one.aim(), Aim::dribble);
+  EXPECT_GT(one.memory.at.x, one.scene.ball.x);
+  // With 2.5 m of the 3 m behind it, it is kicked as it is.
+  one.memory.held_at = one.scene.ball - Vec3{2.6, 0, 0};
+  EXPECT_NE(one.aim(), Aim::dribble);
+  EXPECT_GT(one.memory.tolerance_rad, 1);
+}
+
+TEST(SoccerPlayer, SetPiecesArePlayedToOthersSinceGoalsFromThemDoNotCount) {
+  WithBall one(Play::passing, {2, 0, 0});
+  one.scene.holds = false;
+  one.scene.game.piece = Piece::free_kick;
+  one.scene.game.whose = Whose::ours;
+  one.mate(3, 3, 3);
+  one.scene.mates[0].role = Role::supporter;
+  one.scene.mates[0].target = {2.5, 3, 0};
+  aim_of_piece(one.scene, one.memory);
+  EXPECT_EQ(one.memory.aim, Aim::pass);
+  EXPECT_EQ(one.memory.at, (Vec3{2.5, 3, 0}));
+  one.scene.game.piece = Piece::penalty;
+  aim_of_piece(one.scene, one.memory);
+  EXPECT_EQ(one.memory.aim, Aim::shot);
+}
+
+// ------------------------------------------------------------------------------------------------- robots and goals
+
+TEST(SoccerPlayer, TracksARobotThatDrivesByWithoutMuchLag) {
+  std::vector<Obstacle> robots;
+  for (int i = 0; i <= 25; ++i) {  // 1.5 m/s for a second
+    if (i > 0) predict_robots(robots, 0.04, 0.04 * i);
+    see_robot(robots, {0.06 * i, 2, 0}, 0.06, 0.04 * i);
+  }
+  ASSERT_EQ(robots.size(), 1u);
+  EXPECT_NEAR(robots[0].at.x, 1.5, 0.03);
+  EXPECT_NEAR(robots[0].velocity.x, 1.5, 0.15);
+  // One that is seen 10 m away, by 0.8 m, is the same one; beside it stands another.
+  std::vector<Obstacle> far;
+  see_robot(far, {10, 0, 0}, 0.44, 0);
+  see_robot(far, {10.8, 0, 0}, 0.44, 0.04);
+  EXPECT_EQ(far.size(), 1u);
+  see_robot(far, {10, 2, 0}, 0.44, 0.08);
+  EXPECT_EQ(far.size(), 2u);
+}
+
+TEST(SoccerPlayer, KnowsWhichGoalItStandsBeside) {
+  Self self;
+  self.at = {11.5, 2.8, 0};
+  self.yaw_known = self.known = true;
+  self.var_xx = self.var_yy = 0.01;
+  // The middle of the goal at (11.3, 0) lies behind it there.
+  const double goal_x = 11 + 0.5 * soccer::dimensions_of(soccer::FieldSize::m22x14).goal_depth_m;
+  const auto fix = place_from_goal(self, soccer::dimensions_of(soccer::FieldSize::m22x14),
+                                   {goal_x - 11.5, -2.8, 0});
+  ASSERT_TRUE(fix);
+  EXPECT_NEAR(fix->at.x, 11.5, 1e-9);
+  EXPECT_NEAR(fix->at.y, 2.8, 1e-9);
+}
+
+TEST(SoccerPlayer, ComesOutFromBesideAGoalStraight) {
+  const auto field = soccer::dimensions_of(soccer::FieldSize::m22x14);
+  EXPECT_EQ(beside_goals(field, {11.4, 1.6, 0}, {5, 0, 0}), (Vec3{10.3, 1.6, 0}));
+  EXPECT_EQ(beside_goals(field, {-11.4, 0.2, 0}, {-9, 3, 0}), (Vec3{-10.3, 0.2, 0}));
+  EXPECT_EQ(beside_goals(field, {10.5, 1.6, 0}, {5, 0, 0}), (Vec3{5, 0, 0}));
+}
+
+TEST(SoccerPlayer, MeetsRobotsOfTheOtherTeamSlowly) {
+  const auto speed_towards = [](double gap_m) {
+    Rig rig(Rig::placed(0, 0, 0));
+    rig.put("ball", 4, 0);
+    rig.put("robot", gap_m, 0);
+    // The robot is where the odometry says: it does not get nearer.
+    for (int i = 0; i < 40; ++i) rig.step();
+    return norm(rig.player.state.ordered_mps.x * Vec3{1, 0, 0});
+  };
+  EXPECT_LT(speed_towards(0.6), 0.4) << "it stands before it";
+  EXPECT_GT(speed_towards(3), 1.5);
+}
+
+TEST(SoccerPlayer, LeavesTheBallAfterItsSetPieceUntilAnotherHasTouchedIt) {
+  Rig rig(Rig::placed(-0.34, 0, 0));
+  rig.put("ball", 0.34, 0);
+  rig.referee.message.phase = "running";
+  rig.referee.message.set_piece = "free_kick";
+  rig.referee.message.team = "cyan";
+  for (int i = 0; i < 3 && rig.player.state.memory.kicks == 0; ++i) rig.step();
+  ASSERT_EQ(rig.player.state.memory.kicks, 1u);
+  EXPECT_TRUE(rig.player.state.memory.taken);
+  rig.referee.message.in_play = true;
+  rig.eye.message.objects.clear();
+  rig.put("ball", 1.5, 0);
+  for (int i = 0; i < 50; ++i) rig.step();
+  EXPECT_TRUE(rig.player.state.memory.taken) << "nobody was at the ball for two seconds";
+  rig.put("robot", 1.8, 0.1);
+  for (int i = 0; i < 5; ++i) rig.step();
+  EXPECT_FALSE(rig.player.state.memory.taken);
+}
+
+TEST(SoccerPlayer, TheSpotOfASetPieceFollowsTheBallUntilPlayMayGoOn) {
+  Game game;
+  game.phase = Phase::preparing;
+  game.spot = {5, 5, 0};
+  settle(game, {1, 1, 0.11});
+  EXPECT_EQ(game.spot, (Vec3{1, 1, 0})) << "it was put there";
+  settle(game, {1.1, 1, 0.11});
+  EXPECT_NEAR(game.spot.x, 1.01, 1e-12) << "a tenth of what is noise";
+  game.phase = Phase::running;
+  settle(game, {3, 1, 0.11});
+  EXPECT_NEAR(game.spot.x, 1.01, 1e-12);
 }
 
 TEST(SoccerPlayer, StateComesBackFromBytesAndTooLongListsAreRefused) {

@@ -11,17 +11,35 @@ Vec3 ball_after(Vec3 at, Vec3 velocity, double after_s) {
   return at + (t - 0.5 * rolling_mps2 * t * t / speed) * velocity;
 }
 
+namespace {
+
+/// Variances of a place and velocity after a time in which accelerations with this power density [m^2/s^3] came.
+void widen(auto& track, double dt_s, double density) {
+  track.var_p += dt_s * (2 * track.cov_pv + dt_s * track.var_v) + 1e-6;
+  track.cov_pv += dt_s * track.var_v;
+  track.var_v = std::min(100.0, track.var_v + density * dt_s);
+  track.var_p = std::min(100.0, track.var_p);
+  track.cov_pv = std::min(50.0, track.cov_pv);
+}
+
+/// Corrects place and velocity by a sighting with this variance.
+void correct(auto& track, Vec3 off, double r) {
+  const double s = track.var_p + r, k = track.var_p / s, l = track.cov_pv / s;
+  track.at += k * off;
+  track.velocity += l * off;
+  track.var_v = std::max(1e-4, track.var_v - l * track.cov_pv);
+  track.cov_pv *= 1 - k;
+  track.var_p = std::max(1e-6, track.var_p * (1 - k));
+}
+
+}  // namespace
+
 void predict_ball(Ball& ball, double dt_s) {
   if (!ball.known) return;
   ball.at = ball_after(ball.at, ball.velocity, dt_s);
   const double speed = norm(ball.velocity);
   if (speed > 1e-6) ball.velocity = (std::max(0.0, speed - rolling_mps2 * dt_s) / speed) * ball.velocity;
-  constexpr double q = 9;  // squared acceleration, m^2/s^4, over one sighting's interval
-  ball.var_p += dt_s * (2 * ball.cov_pv + dt_s * ball.var_v) + 1e-6;
-  ball.cov_pv += dt_s * ball.var_v;
-  ball.var_v = std::min(100.0, ball.var_v + q * dt_s * 0.1);
-  ball.var_p = std::min(100.0, ball.var_p);
-  ball.cov_pv = std::min(50.0, ball.cov_pv);
+  widen(ball, dt_s, 0.9);
 }
 
 void see_ball(Ball& ball, Vec3 at, double std_m, double now_s) {
@@ -33,19 +51,13 @@ void see_ball(Ball& ball, Vec3 at, double std_m, double now_s) {
     return;
   }
   const Vec3 off = at - ball.at;
-  const double s = ball.var_p + r;
-  if (dot(off, off) > 25 * s) {
+  if (dot(off, off) > 25 * (ball.var_p + r)) {
     if (++ball.refused < 2) return;
     ball = {at, {}, r, 0, 16, now_s, 0, true};
     return;
   }
   ball.refused = 0;
-  const double k = ball.var_p / s, l = ball.cov_pv / s;
-  ball.at += k * off;
-  ball.velocity += l * off;
-  ball.var_v = std::max(1e-4, ball.var_v - l * ball.cov_pv);
-  ball.cov_pv *= 1 - k;
-  ball.var_p = std::max(1e-6, ball.var_p * (1 - k));
+  correct(ball, off, r);
   ball.seen_s = now_s;
 }
 
@@ -53,35 +65,32 @@ void hold_ball(Ball& ball, Vec3 at, Vec3 velocity, double now_s) {
   ball = {flat(at), flat(velocity), 1e-3, 0, 0.3, now_s, 0, true};
 }
 
-void see_robot(std::vector<Obstacle>& robots, Vec3 at, double now_s) {
+void see_robot(std::vector<Obstacle>& robots, Vec3 at, double std_m, double now_s) {
   if (!is_finite(at)) return;
   at = flat(at);
+  const double r = std_m * std_m;
   Obstacle* nearest = nullptr;
-  double best = 0.49;
+  double best = 1;
   for (Obstacle& each : robots) {
     const Vec3 off = at - each.at;
-    if (dot(off, off) < best) best = dot(off, off), nearest = &each;
+    const double part = dot(off, off) / std::clamp(9 * (each.var_p + r), 0.49, 2.25);
+    if (part < best) best = part, nearest = &each;
   }
-  if (nearest != nullptr) {
-    const double dt = now_s - nearest->seen_s;
-    const Vec3 off = at - nearest->at;
-    nearest->at += 0.5 * off;
-    if (dt > 1e-3) {
-      nearest->velocity += (0.2 / std::max(0.1, dt)) * off;
-      const double speed = norm(nearest->velocity);
-      if (speed > 4) nearest->velocity = (4 / speed) * nearest->velocity;
-    }
-    nearest->seen_s = now_s;
+  if (nearest == nullptr) {
+    if (robots.size() < most_obstacles) robots.push_back({at, {}, r, 0, 1, now_s});
     return;
   }
-  if (robots.size() < most_obstacles) robots.push_back({at, {}, now_s});
+  correct(*nearest, at - nearest->at, r);
+  const double speed = norm(nearest->velocity);
+  if (speed > 4) nearest->velocity = (4 / speed) * nearest->velocity;
+  nearest->seen_s = now_s;
 }
 
 void predict_robots(std::vector<Obstacle>& robots, double dt_s, double now_s) {
   std::erase_if(robots, [&](const Obstacle& each) { return now_s - each.seen_s > 0.8; });
   for (Obstacle& each : robots) {
     each.at += dt_s * each.velocity;
-    each.velocity = std::max(0.0, 1 - dt_s) * each.velocity;
+    widen(each, dt_s, 1);
   }
 }
 

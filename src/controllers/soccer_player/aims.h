@@ -1,0 +1,40 @@
+#pragma once
+/// Aims: what a player does with the ball, chosen by what each thing that it could do is worth.
+///
+/// Worth    of a ball at a place, in the hands of the team: about how likely it comes to a goal, more in front of the goal and less
+///          beside the touch lines. What may be done is worth the probability that it comes off times the worth of where the
+///          ball is then:
+///          shot      1 if it passes opponents and lies between the posts. An opponent reaches 0.36 m and what it drives until the ball
+///                    is there; the ball scatters by 0.05 m and 3.5 % of the way;
+///          pass      to a team-mate on a line that no opponent reaches sooner;
+///          carry     with the handler, in seven directions, as far as the rules let it;
+///          push on   a soft kick ahead to where the player itself is sooner than anybody else;
+///          clearance far ahead, away from opponents.
+///          Turning towards the aim costs time, more where an opponent is near.
+/// Styles   multiply the worth of passes, of carrying and of pushing on (keys.h). The style `run_and_kick` does none of it: it
+///          kicks at the goal from wherever it is.
+/// Limits   opponents are taken to stand where they are, and to drive at any ball that passes near.
+/// Cost     about thirty lines against all opponents.
+#include "controllers/soccer_player/scene.h"
+
+namespace sandlot::controllers::soccer_player {
+
+void choose_aim(const Scene& scene, Memory& memory);
+/// Aim of an own set piece: where the one that offers itself will stand, else any free team-mate, else ahead.
+void aim_of_piece(const Scene& scene, Memory& memory);
+/// Aim of a goalkeeper with the ball: a free team-mate, else the side without opponents.
+void aim_of_keeper(const Scene& scene, Memory& memory);
+
+/// Point of the goal's mouth that a shot from `from` has the best chance at, and that chance, 0 to 1.
+struct Shot {
+  Vec3 at;
+  double chance = 0;
+};
+Shot best_shot(const Scene& scene, Vec3 from);
+
+/// Least distance of opponents from a ball's way beside what they reach until it is there [m], at most 2.
+/// @param speed_mps  of the ball, constant; @param reach_m  of an opponent that stands still; @param drive_mps2  with which it starts
+double room_beside(const Scene& scene, Vec3 from, Vec3 to, double speed_mps, double reach_m,
+                   double drive_mps2);
+
+}  // namespace sandlot::controllers::soccer_player
