@@ -142,6 +142,10 @@ add_test(NAME refbox COMMAND Python3::Interpreter tests/refbox_test.py WORKING_D
 set_tests_properties(refbox PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+add_test(NAME match_lockstep COMMAND Python3::Interpreter tests/match_lockstep_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(match_lockstep PROPERTIES LABELS system TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # RoBIOS programs in examples/robios.
 add_test(NAME robios_programs COMMAND Python3::Interpreter tests/robios_programs_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(robios_programs PROPERTIES LABELS slow TIMEOUT 600
