@@ -46,7 +46,6 @@ void shape_image(msg::Image& image, const optics::Lens& lens, const char* encodi
   image.height = static_cast<std::uint32_t>(lens.height);
   image.encoding = encoding;
   image.step = image.width * pixel_bytes;
-  image.data.assign(static_cast<std::size_t>(image.step) * image.height, 0);
 }
 
 ColorImage::ColorImage(const DeviceBuild& build, Topic<msg::Image>* topic, const optics::Lens& lens,
@@ -55,7 +54,6 @@ ColorImage::ColorImage(const DeviceBuild& build, Topic<msg::Image>* topic, const
     : topic_(topic), format_(format), width_(lens.width), height_(lens.height), key_(build.key), use_(use) {
   const std::uint32_t channels = format == Format::mono8 ? 1 : 3;
   shape_image(topic->message, lens, format_names[static_cast<int>(format)].name, channels, frame_id);
-  if (channels == 1) rgb_.resize(3 * topic->message.data.size());
   noise_.reset(noise, Stream(build.seed, build.key, Purpose::initial, 0).fork(use));
 }
 
@@ -76,7 +74,9 @@ std::span<std::uint8_t> ColorImage::rgb() {
   image.height = static_cast<std::uint32_t>(height_);
   image.step = image.width * (format_ == Format::mono8 ? 1 : 3);
   image.data.resize(static_cast<std::size_t>(image.step) * image.height);
-  return format_ == Format::mono8 ? std::span(rgb_) : std::span(image.data);
+  if (format_ != Format::mono8) return image.data;
+  rgb_.resize(3 * image.data.size());
+  return rgb_;
 }
 
 void ColorImage::finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, double errors,

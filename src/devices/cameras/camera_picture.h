@@ -79,6 +79,7 @@ class ColorImage {
   /// From now on the picture goes out as a file's bytes, too.
   void compress(Topic<msg::CompressedImage>* topic, Compression compression, int quality,
                 ImageEncoder encode);
+  /// Room for the next picture, made at the first one.
   std::span<std::uint8_t> rgb();
   void finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, double errors, std::uint64_t sample,
               const Context& context);
@@ -95,7 +96,7 @@ class ColorImage {
   std::vector<std::uint8_t> rgb_;  ///< of mono8 and for compressing bgr8: others are drawn in place
 };
 
-/// Sizes and encoding; all pixels 0.
+/// Sizes and encoding. There are no pixels before the first picture: those of a level that is off would be State.
 void shape_image(msg::Image& image, const optics::Lens& lens, const char* encoding, std::uint32_t pixel_bytes,
                  const std::string& frame_id);
 

@@ -245,6 +245,9 @@ TEST(Cameras, ObjectsAreToldWithoutAnyPicture) {
   EXPECT_NEAR(seen[1].elevation, math::asin(1 / std::sqrt(6.0)), 1e-12);
   EXPECT_EQ(stage.topic<msg::Image>("eye/image").count, 0u);
   EXPECT_EQ(stage.topic<msg::ObjectPoseArray>("eye/world").count, 0u);
+  // Pixels that nobody drew are no State, which every tick hashes.
+  EXPECT_EQ(stage.picture("eye/image").step, 80u * 3);
+  EXPECT_TRUE(stage.picture("eye/image").data.empty());
 }
 
 TEST(Cameras, WhatHidesAThingAndTheEdgeOfThePictureCount) {

@@ -80,7 +80,7 @@ Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
   cameras::shape_image(colored->message, lens, "rgb8", 3, optical);
   cameras::fill_info(info->message, lens, optical);
   Camera camera{std::move(spec), {}, cameras::CameraMount(build, lens), labels, instances, colored, info};
-  camera.seen.resize(labels->message.data.size());
+  camera.seen.resize(static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height));
   return camera;
 }
 
