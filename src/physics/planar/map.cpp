@@ -85,16 +85,23 @@ void Map::file_discs() {
       16u, std::bit_ceil(static_cast<std::uint32_t>(std::sqrt(4.0 * static_cast<double>(count)))));
   if (disc_cells_.columns() != columns) disc_cells_.resize(cell_m_, columns, columns);
   area_ = wall_area_;
-  longest_walk_m_ = cell_m_ *
-                    static_cast<double>(std::max<std::size_t>(1024, 2 * (discs_.size() + walls_.size())));
+  filed_.clear();
   disc_cells_.build(count, [&](std::uint32_t k) {
     const Disc& disc = discs_[k];
     if (!(disc.radius_m > 0)) return HashGrid::Range{};
     const Area area = around(disc.centre, disc.radius_m);
     const HashGrid::Range range = disc_cells_.cover(area);
-    if (!range.empty()) grow(area_, area);
+    if (range.empty()) return range;
+    grow(area_, area);
+    filed_.push_back(k);
     return range;
   });
+  // Of few things, three are looked at in the time of a step to the next cell. Among many, a ray mostly ends
+  // soon.
+  constexpr std::size_t few = 48;
+  const std::size_t things = filed_.size() + walls_.size();
+  const std::size_t cells = things <= few ? things / 3 : std::max<std::size_t>(1024, 2 * things);
+  longest_walk_m_ = cell_m_ * static_cast<double>(cells);
 }
 
 void Map::walls_near(Area area, std::vector<std::uint32_t>& out) const {
@@ -226,16 +233,16 @@ void Map::meet_silhouette(const Ray& ray, const Disc& disc, Hit& hit) const {
   }
 }
 
-/// The same as a walk, without cells: those of a world with one thing lost far away are too many.
+/// The same as a walk, without cells: where there are few things, or one is lost far away, those are too many.
 void Map::meet_all(const Ray& ray, Hit& hit) const {
-  for (const Disc& disc : discs_) {
-    if (disc.instance == ray.ignored || !(disc.radius_m > 0) ||
-        disc_cells_.cover(around(disc.centre, disc.radius_m)).empty())
-      continue;
+  for (const std::uint32_t k : filed_) {
+    const Disc& disc = discs_[k];
+    if (disc.instance == ray.ignored) continue;
     if (disc.silhouette == ~0u) hit.meet(ray, disc);
     else meet_silhouette(ray, disc, hit);
   }
-  for (std::uint32_t k = 0; k < walls_.size(); ++k) meet_wall(ray, k, hit);
+  for (std::uint32_t k = 0; k < walls_.size(); ++k)
+    if (!passes_by(ray, walls_[k].outline.centre, walls_[k].outline.radius_m, hit)) meet_wall(ray, k, hit);
 }
 
 /// The cell in which a walk begins and where its edges are, from the ray's origin. Rays of one job mostly

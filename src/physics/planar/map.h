@@ -99,6 +99,7 @@ class Map {
   std::vector<bool> walled_;
   std::vector<std::uint32_t> everywhere_;  ///< walls so large that every query looks at them
   Area wall_area_, area_;                  ///< of the walls, and of all there is
+  std::vector<std::uint32_t> filed_;       ///< discs that are in cells, ascending
   double longest_walk_m_ = 0;              ///< along x and y; beyond it, to look at everything is quicker
 };
 
