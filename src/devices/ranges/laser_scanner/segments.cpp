@@ -20,14 +20,15 @@ double along(Vec3 direction, Vec3 a, Vec3 b) {
 
 }  // namespace
 
+SegmentFinder::Echo SegmentFinder::towards(double angle_rad) {
+  const auto [s, c] = math::sincos(angle_rad);
+  return {.angle_rad = angle_rad, .direction_S = {c, s, 0}};
+}
+
 /// Casts the rays of `fresh_`.
 void SegmentFinder::cast(const RayCaster& rays, RayJob job, double min_m) {
   directions_.clear();
-  for (Echo& echo : fresh_) {
-    const auto [s, c] = math::sincos(echo.angle_rad);
-    echo.direction_S = {c, s, 0};
-    directions_.push_back(echo.direction_S);
-  }
+  for (const Echo& echo : fresh_) directions_.push_back(echo.direction_S);
   distances_m_.resize(fresh_.size());
   bodies_.assign(fresh_.size(), no_body);
   job.directions = directions_;
@@ -91,9 +92,14 @@ void SegmentFinder::find(const Fan& fan, const RayCaster& rays, RayJob job,
   const double fov_rad = fan.last_rad - fan.first_rad;
   const auto gaps = static_cast<std::size_t>(std::max(1.0, std::ceil(fov_rad / fan.step_rad - 1e-9)));
   const double step_rad = fov_rad / static_cast<double>(gaps);
-  fresh_.clear();
-  for (std::size_t i = 0; i <= gaps; ++i)
-    fresh_.push_back({.angle_rad = fan.first_rad + step_rad * static_cast<double>(i)});
+  if (fan.first_rad != fan_.first_rad || fan.last_rad != fan_.last_rad || fan.step_rad != fan_.step_rad ||
+      first_.empty()) {
+    fan_ = fan;
+    first_.clear();
+    for (std::size_t i = 0; i <= gaps; ++i)
+      first_.push_back(towards(fan.first_rad + step_rad * static_cast<double>(i)));
+  }
+  fresh_ = first_;
   cast(rays, job, fan.min_m);
   echoes_ = fresh_;
   const std::size_t most = 5 * echoes_.size() + 32;
@@ -106,7 +112,7 @@ void SegmentFinder::find(const Fan& fan, const RayCaster& rays, RayJob job,
       const bool nothing = a.body == no_body && b.body == no_body;
       // Only the gaps that the round before has left this wide.
       if (nothing || a.linked || b.angle_rad - a.angle_rad > 1.5 * gap_rad) continue;
-      fresh_.push_back({.angle_rad = 0.5 * (a.angle_rad + b.angle_rad)});
+      fresh_.push_back(towards(0.5 * (a.angle_rad + b.angle_rad)));
     }
     if (fresh_.empty()) break;
     cast(rays, job, fan.min_m);

@@ -37,10 +37,13 @@ class SegmentFinder {
     std::uint32_t body = no_body;
     bool linked = false;  ///< to the next: one straight line of one link
   };
+  static Echo towards(double angle_rad);
   void cast(const RayCaster& rays, RayJob job, double min_m);
   void link(double tolerance_m);
   void cut(std::size_t begin, std::size_t end, const Fan& fan, std::vector<msg::LineSegment>& out);
 
+  Fan fan_;                  ///< for which `first_` was made
+  std::vector<Echo> first_;  ///< its rays before they meet anything
   std::vector<Echo> echoes_, fresh_, merged_;
   std::vector<Vec3> directions_;
   std::vector<float> distances_m_;
