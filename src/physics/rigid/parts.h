@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -119,6 +120,12 @@ struct Roller {
   Pose X_BR;    ///< its body in the wheel's, at position 0
   Vec3 axis_R;  ///< of its joint
   Vec3 out_B;   ///< unit, from the wheel's axis
+
+  /// Of half its angle, at the position that it was asked for last: most rollers that are frozen stand still.
+  struct Turn {
+    double position = 0, sin = 0, cos = 1;
+  };
+  Turn turn;
 };
 
 struct Wheel {
@@ -128,13 +135,15 @@ struct Wheel {
   std::uint32_t link = 0;
   Vec3 centre_B, axis_B;
   std::vector<Roller> rollers;
-  model::Collision solid;       ///< its outside as one body
-  Barrel probe{};               ///< a little thicker and as wide as the rollers: what touches it wakes them
-  Symmetric3 locked_B;          ///< inertia with all rollers in it
-  double spin_inertia = 0;      ///< of a roller about its own axis
-  double wake_cos, freeze_cos;  ///< of the angle between a roller and a point that is touched
+  model::Collision solid;         ///< its outside as one body
+  Barrel probe{};                 ///< a little thicker and as wide as the rollers: what touches it wakes them
+  Symmetric3 locked_B;            ///< inertia with all rollers in it
+  double spin_inertia = 0;        ///< of a roller about its own axis
+  double wake_cos, freeze_cos;    ///< of the angle between a roller and a point that is touched
+  double roller_cos, roller_sin;  ///< of the declared angle
 
   bool on_rollers = false;  ///< State
+  bool rolling = false;     ///< some roller is awake
 
   std::vector<Vec3> touched_B;  ///< scratch of one sub-step: unit, across the axis
 };
@@ -156,6 +165,8 @@ struct Instance {
   std::vector<BodyId> link_ids;
   std::vector<JointId> joint_ids;
   std::vector<std::pair<const Body*, const Body*>> joined;  ///< by joints: these never collide
+  std::size_t own_bodies = 0, own_joints = 0;               ///< what comes behind is rollers
+  bool rolling = false;                                     ///< some roller is awake
   double mass_kg = 0;
   bool anchored = false;  ///< some joint holds on to the world
   bool guided = false;    ///< moves along a path: no bodies, but velocity
@@ -165,6 +176,10 @@ struct Instance {
   std::uint32_t drive_link = 0;
 
   std::optional<Pose> destination;  ///< of a guided one, after the next step
+
+  /// Those that may be active, in their order: without the rollers where all of them are frozen.
+  std::span<Body> movers() { return std::span(bodies).first(rolling ? bodies.size() : own_bodies); }
+  std::span<Joint> moved_joints() { return std::span(joints).first(rolling ? joints.size() : own_joints); }
 
   bool is_moving() const { return V_WM.linear != Vec3{} || V_WM.angular != Vec3{}; }
   Vec3 velocity_at(Vec3 point_W) const { return V_WM.linear + cross(V_WM.angular, point_W - X_WM.p); }

@@ -109,7 +109,7 @@ void RigidEngine::set_pose(InstanceId id, const Pose& X_WM) {
     body.force_N = body.torque_Nm = {};
     put(body);
   }
-  for (const Wheel& wheel : instance.wheels) follow(wheel);
+  for (Wheel& wheel : instance.wheels) follow(wheel);
   show(instance);
   wake_instance(instance);
   wake_neighbours(instance);
@@ -129,7 +129,7 @@ void RigidEngine::set_velocity(InstanceId id, const Velocity& V_WB) {
     body.w = body.w + dw;
     put(body);
   }
-  for (const Wheel& wheel : instance.wheels) follow(wheel);
+  for (Wheel& wheel : instance.wheels) follow(wheel);
   for (Joint& joint : instance.joints) measure_velocity(joint, instance.X_WM);
   show(instance);
   wake_instance(instance);

@@ -95,7 +95,7 @@ void RigidEngine::push_forces(double h) {
   for (Instance* instance : order_) {
     if (instance->guided && !instance->destination) instance->V_WM = {};
     if (instance->bodies.empty()) continue;
-    for (Joint& joint : instance->joints) {
+    for (Joint& joint : watched_joints_.empty() ? instance->moved_joints() : std::span(instance->joints)) {
       const Body* const mover = joint.child ? joint.child : joint.parent;
       if (!mover || !mover->frozen) prepare_joint(joint, spec_.erp, h);
       if (joint.main && joint.is(model::JointType::screw) && mover->awake)
@@ -106,7 +106,7 @@ void RigidEngine::push_forces(double h) {
       if (joint.load_watched && joint.main) watch_load(joint);
     }
     if (instance->drive.active) drive(*instance, h);
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active()) continue;
       put_orientation(b);
       if (b.weighs_partly) {
@@ -146,14 +146,14 @@ void RigidEngine::unite(const Body* a, const Body* b) {
 void RigidEngine::find_islands() {
   island_parent_.clear();
   for (Instance* instance : order_)
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active()) continue;
       b.island = static_cast<std::uint32_t>(island_parent_.size());
       island_parent_.push_back(b.island);
     }
   counters_.awake_bodies = island_parent_.size();
   for (Instance* instance : order_)
-    for (const Joint& joint : instance->joints)
+    for (const Joint& joint : instance->moved_joints())
       if (joint.main && joint.child && joint.child->active()) unite(joint.child, joint.parent);
   for (const Hit& hit : hits()) unite(hit.a->body, hit.b->body);
   for (const Held& grip : grips_)
@@ -163,8 +163,9 @@ void RigidEngine::find_islands() {
   for (const Hit& hit : hits()) ++islands_[root((hit.a->body ? hit.a->body : hit.b->body)->island)].contacts;
   for (Instance* instance : order_) {
     bool idle = !instance->is_robot && !instance->drive.active;
-    for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
-    for (const Body& b : instance->bodies) {
+    if (idle)
+      for (const Joint& joint : instance->joints) idle = idle && joint.target.mode == JointTarget::Mode::free;
+    for (const Body& b : instance->movers()) {
       if (!b.active()) continue;
       Island& island = islands_[root(b.island)];
       island.was_quick = island.was_quick || b.quick;
@@ -187,7 +188,7 @@ void RigidEngine::solve(double h, std::uint64_t stream_key) {
   library::seed(stream_key);
   bool any_direct = false, any_quick = false;
   for (Instance* instance : order_)
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active()) continue;
       b.quick = islands_[root(b.island)].quick;
       (b.quick ? any_quick : any_direct) = true;
@@ -207,7 +208,7 @@ void RigidEngine::solve(double h, std::uint64_t stream_key) {
 template <class Choose>
 void RigidEngine::enable(Choose&& choose) {
   for (Instance* instance : order_)
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       const bool wanted = b.active() && choose(b);
       if (wanted == b.enabled) continue;
       b.enabled = wanted;
@@ -260,8 +261,8 @@ std::string RigidEngine::fastest_body() const {
 bool RigidEngine::nobody_exploded() {
   const Body* worst = nullptr;
   double worst_excess = 1, speed = 0, spin = 0;
-  for (const Instance* instance : order_)
-    for (const Body& b : instance->bodies) {
+  for (Instance* instance : order_)
+    for (const Body& b : instance->movers()) {
       if (!b.active()) continue;
       const Vec3 p = vec(dBodyGetPosition(b.ode)), v = vec(dBodyGetLinearVel(b.ode)),
                  w = vec(dBodyGetAngularVel(b.ode));
@@ -292,11 +293,11 @@ void RigidEngine::advance(double h) {
     if (instance->guided) show(*instance);
     if (instance->bodies.empty()) continue;
     bool any_awake = false;
-    for (const Body& b : instance->bodies) any_awake = any_awake || b.active();
+    for (const Body& b : instance->movers()) any_awake = any_awake || b.active();
     if (!any_awake) continue;
-    for (Joint& joint : instance->joints)
+    for (Joint& joint : instance->moved_joints())
       if (!joint.child || !joint.child->frozen) measure_effort(joint);
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active()) continue;
       b.p = vec(dBodyGetPosition(b.ode));
       b.v = vec(dBodyGetLinearVel(b.ode));
@@ -304,7 +305,7 @@ void RigidEngine::advance(double h) {
       b.q = turned(b.q, b.w, b.spin_axis_B, h);
       b.force_N = b.torque_Nm = {};
     }
-    for (Joint& joint : instance->joints)
+    for (Joint& joint : instance->moved_joints())
       if (!joint.child || !joint.child->frozen) measure_position(joint, h, instance->X_WM);
     for (Wheel& wheel : instance->wheels) roll_on(wheel, h);
     show(*instance);
@@ -315,7 +316,7 @@ void RigidEngine::send_to_sleep(double h) {
   const double speed2 = spec_.sleep_speed_mps * spec_.sleep_speed_mps;
   const double spin2 = spec_.sleep_spin_radps * spec_.sleep_spin_radps;
   for (Instance* instance : order_)
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active()) continue;
       b.quiet_s = dot(b.v, b.v) < speed2 && dot(b.w, b.w) < spin2 ? b.quiet_s + h : 0;
       Island& island = islands_[root(b.island)];
@@ -323,7 +324,7 @@ void RigidEngine::send_to_sleep(double h) {
     }
   for (Instance* instance : order_) {
     bool changed = false;
-    for (Body& b : instance->bodies) {
+    for (Body& b : instance->movers()) {
       if (!b.active() || !islands_[root(b.island)].may_sleep) continue;
       b.awake = b.quick = false;
       b.v = b.w = {};

@@ -23,6 +23,7 @@ double spin_inertia(const model::Link& link, const model::Joint& joint) {
 void make_shapes(Wheel& wheel) {
   const model::RollerWheel& d = *wheel.decl;
   const math::SinCos a = math::sincos(d.angle_rad);
+  wheel.roller_cos = a.cos, wheel.roller_sin = a.sin;
   const double across = 0.5 * d.roller_length_m * std::abs(a.cos) + d.roller_radius_m * std::abs(a.sin);
   const double half = across + 0.5 * (d.rows - 1) * d.row_spacing_m, r = d.radius_m;
   // As narrow as its rollers allow, but not so that it loses more than half of its radius to the sides.
@@ -95,7 +96,8 @@ void make_wheels(Instance& instance) {
       const Body* const body = instance.joints[r].child;
       if (declared[r].roller_of != j || !body || body == wheel.body || body->X_MB.p == wheel.body->X_MB.p)
         continue;
-      Roller roller{instance.joints[r].child, &instance.joints[r], nullptr, declared[r].child, {}, {}, {}};
+      Roller roller{
+          instance.joints[r].child, &instance.joints[r], nullptr, declared[r].child, {}, {}, {}, {}};
       roller.X_BR = X_BM * roller.body->X_MB;
       roller.X_BR.q = normalised(roller.X_BR.q);
       roller.axis_R = rotate(roller.joint->X_child.q, declared[r].axis_J);
@@ -109,18 +111,33 @@ void make_wheels(Instance& instance) {
     make_shapes(wheel);
     settle(wheel);
   }
+  const auto is_roller = [](const Body* body) { return body && body->carrier; };
+  instance.own_bodies = instance.bodies.size();
+  while (instance.own_bodies > 0 && is_roller(&instance.bodies[instance.own_bodies - 1]))
+    --instance.own_bodies;
+  instance.own_joints = instance.joints.size();
+  while (instance.own_joints > 0 && is_roller(instance.joints[instance.own_joints - 1].child))
+    --instance.own_joints;
 }
 
 void settle(Wheel& wheel) {
   int awake = 0;
   for (Roller& roller : wheel.rollers) {
     awake += roller.body->frozen ? 0 : 1;
+    if (roller.body->frozen && roller.body->enabled) {
+      roller.body->enabled = false;
+      dBodyDisable(roller.body->ode);
+    }
     for (const dJointID ode : {roller.joint->main, roller.joint->extra}) {
       if (!ode) continue;
       if (roller.body->frozen) dJointDisable(ode);
       else dJointEnable(ode);
     }
   }
+  wheel.rolling = awake > 0;
+  Instance& instance = *wheel.body->instance;
+  instance.rolling = std::any_of(instance.wheels.begin(), instance.wheels.end(),
+                                 [](const Wheel& each) { return each.rolling; });
   Symmetric3& t = wheel.body->inertia_B;
   t = wheel.locked_B;
   t.xx -= awake * wheel.spin_inertia, t.yy -= awake * wheel.spin_inertia, t.zz -= awake * wheel.spin_inertia;
@@ -131,10 +148,14 @@ void settle(Wheel& wheel) {
 
 namespace {
 
-void follow(const Wheel& wheel, const Roller& roller) {
+void follow(const Wheel& wheel, Roller& roller) {
   const Body& carrier = *wheel.body;
   Body& body = *roller.body;
-  const math::SinCos half = math::sincos(0.5 * roller.joint->position);
+  Roller::Turn& half = roller.turn;
+  if (const double position = roller.joint->position; position != half.position) {
+    const math::SinCos now = math::sincos(0.5 * position);
+    half = {position, now.sin, now.cos};
+  }
   const Vec3 a = half.sin * roller.axis_R, arm = rotate(carrier.q, roller.X_BR.p);
   body.q = carrier.q * roller.X_BR.q * Quat{half.cos, a.x, a.y, a.z};
   body.p = carrier.p + arm;
@@ -144,8 +165,8 @@ void follow(const Wheel& wheel, const Roller& roller) {
 
 }  // namespace
 
-void follow(const Wheel& wheel) {
-  for (const Roller& roller : wheel.rollers)
+void follow(Wheel& wheel) {
+  for (Roller& roller : wheel.rollers)
     if (roller.body->frozen) follow(wheel, roller);
 }
 
@@ -207,8 +228,7 @@ Vec3 roller_axis_W(const Wheel& wheel, Vec3 point_W) {
   const Vec3 axis = rotate(wheel.body->q, wheel.axis_B);
   const Vec3 to = point_W - (wheel.body->p + rotate(wheel.body->q, wheel.centre_B));
   const Vec3 out = normalised(to - dot(to, axis) * axis);
-  const math::SinCos a = math::sincos(wheel.decl->angle_rad);
-  return a.cos * axis + a.sin * cross(out, axis);
+  return wheel.roller_cos * axis + wheel.roller_sin * cross(out, axis);
 }
 
 }  // namespace sandlot::rigid

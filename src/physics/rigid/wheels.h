@@ -41,7 +41,7 @@ void make_wheels(Instance& instance);
 /// Tells ODE which rollers and joints count and what the wheel weighs, from the State.
 void settle(Wheel& wheel);
 /// Poses and velocities of frozen rollers, from the wheel's.
-void follow(const Wheel& wheel);
+void follow(Wheel& wheel);
 /// Turns frozen rollers by their own spin, then the same.
 void roll_on(Wheel& wheel, double h_s);
 void stop_frozen(Wheel& wheel);
