@@ -260,10 +260,12 @@ std::optional<InstanceId> Simulation::find_instance(std::string_view name) const
 const TopicBase* Simulation::find_topic(std::string_view name) const {
   const std::size_t begin = name.substr(0, 1) == "/" ? 1 : 0;
   const std::string_view owner = name.substr(begin, name.find('/', begin) - begin);
+  // The topics of a device are called after it. Rules ask in every tick.
   if (const Entity* const entity = find_entity(owner))
     for (const auto& device : entity->devices)
-      for (const Slot& slot : device->topics)
-        if (slot.topic->name() == name || device->path == name) return slot.topic.get();
+      if (name.substr(begin).starts_with(device->path))
+        for (const Slot& slot : device->topics)
+          if (slot.topic->name() == name || device->path == name) return slot.topic.get();
   if (const ProgramEntries* const programs = programs_of(owner))
     for (const auto& program : *programs)
       if (program->outputs)
