@@ -11,6 +11,9 @@ with Team("red", lockstep=True, deadline_s=5) as team:
         robot.subscribe("truth")
     for step in team.steps():
         x = {name: robot.value("truth.pose.pose.position.x") for name, robot in team.robots.items()}
-        mean = sum(x.values()) / len(x)
+        total = 0.0
+        for each in x.values():  # not sum(), which rounds in another way from Python 3.12 on
+            total += each
+        mean = total / len(x)
         for name, robot in team.robots.items():
             robot.command("drive", {"linear": {"x": min(0.6, max(0.0, 0.3 + mean - x[name]))}})
