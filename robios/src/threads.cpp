@@ -17,14 +17,14 @@ using namespace robios;
 
 namespace {
 
-bool attached() { return machine.memory && tasks.current; }
+bool in_task() { return machine.memory && tasks.current; }
 
 /// First of each of these calls.
 void enter_thread() {
-  if (attached()) enter(Call::threads);
+  if (in_task()) enter(Call::threads);
 }
 
-int me() { return attached() ? tasks.current->number + 1 : 1; }
+int me() { return in_task() ? tasks.current->number + 1 : 1; }
 std::int64_t deadline(const timespec* t) { return t ? deadline_ns(*t) : never; }
 
 // Mutexes. The lock goes to the one that waits longest, so that nobody takes it again and again.
@@ -45,7 +45,7 @@ int take(pthread_mutex_t* m, bool waits, std::int64_t until_ns) {
   }
   if (!waits) return EBUSY;
   if (d.__owner == me() && kind(m) == PTHREAD_MUTEX_ERRORCHECK) return EDEADLK;
-  if (!attached()) return EDEADLK;
+  if (!in_task()) return EDEADLK;
   if (!wait_in_queue(m, until_ns)) return ETIMEDOUT;
   d.__lock = 1;
   d.__owner = me();
@@ -59,14 +59,14 @@ int give(pthread_mutex_t* m) {
   if (kind(m) == PTHREAD_MUTEX_RECURSIVE && --d.__count > 0) return 0;
   d.__owner = 0;
   d.__count = 0;
-  Task* const next = attached() ? grant(m) : nullptr;
+  Task* const next = in_task() ? grant(m) : nullptr;
   d.__lock = next ? 1 : 0;  // locked for the next one
   if (next) d.__owner = next->number + 1;
   return 0;
 }
 
 int wait_on(pthread_cond_t* c, pthread_mutex_t* m, std::int64_t until_ns) {
-  if (!attached()) return EINVAL;
+  if (!in_task()) return EINVAL;
   if (int failure = give(m)) return failure;
   const bool came = wait_in_queue(c, until_ns);
   take(m, true, never);
@@ -86,7 +86,7 @@ int take(sem_t* s, bool waits, std::int64_t until_ns) {
     errno = EAGAIN;
     return -1;
   }
-  if (attached() && wait_in_queue(s, until_ns)) return 0;
+  if (in_task() && wait_in_queue(s, until_ns)) return 0;
   errno = ETIMEDOUT;
   return -1;
 }
@@ -102,7 +102,7 @@ int take(pthread_rwlock_t* l, bool write, bool waits, std::int64_t until_ns) {
   Lock& k = lock_of(l);
   while (k.writer != 0 || (write && k.readers > 0)) {
     if (!waits) return EBUSY;
-    if (!attached() || k.writer == me()) return EDEADLK;
+    if (!in_task() || k.writer == me()) return EDEADLK;
     if (!wait_in_queue(l, until_ns)) return ETIMEDOUT;
   }
   if (write) {
@@ -140,7 +140,7 @@ ROBIOS_INTERPOSE(int, pthread_create, pthread_t* thread, const pthread_attr_t* a
                  void* (*code)(void*), void* argument) {
   enter_thread();
   if (!code || !thread) return EINVAL;
-  if (!attached()) return EAGAIN;
+  if (!in_task()) return EAGAIN;
   Task* const task = make_task(
       "thread", [code, argument] { return code(argument); }, 8u << 20, tasks.current->priority, attributes);
   if (!task) return EAGAIN;
@@ -184,7 +184,7 @@ ROBIOS_INTERPOSE(int, pthread_cancel, pthread_t thread) {
 
 ROBIOS_INTERPOSE(int, sched_yield, void) {
   enter_thread();
-  if (attached()) give_way();
+  if (in_task()) give_way();
   return 0;
 }
 ROBIOS_INTERPOSE(int, pthread_yield, void) { return robios_sched_yield(); }
@@ -226,12 +226,12 @@ ROBIOS_INTERPOSE(int, pthread_cond_clockwait, pthread_cond_t* c, pthread_mutex_t
 }
 ROBIOS_INTERPOSE(int, pthread_cond_signal, pthread_cond_t* c) {
   enter_thread();
-  if (attached()) grant(c);
+  if (in_task()) grant(c);
   return 0;
 }
 ROBIOS_INTERPOSE(int, pthread_cond_broadcast, pthread_cond_t* c) {
   enter_thread();
-  if (attached()) grant_all(c);
+  if (in_task()) grant_all(c);
   return 0;
 }
 ROBIOS_INTERPOSE(int, pthread_cond_destroy, pthread_cond_t*) { return 0; }
@@ -269,7 +269,7 @@ ROBIOS_INTERPOSE(int, sem_post, sem_t* s) {
     errno = EOVERFLOW;
     return -1;
   }
-  if (!attached() || !grant(s)) value(s)++;
+  if (!in_task() || !grant(s)) value(s)++;
   return 0;
 }
 ROBIOS_INTERPOSE(int, sem_getvalue, sem_t* s, int* to) {
@@ -312,7 +312,7 @@ ROBIOS_INTERPOSE(int, pthread_rwlock_unlock, pthread_rwlock_t* l) {
   } else {
     return EPERM;
   }
-  if (attached() && k.readers == 0) grant_all(l);
+  if (in_task() && k.readers == 0) grant_all(l);
   return 0;
 }
 ROBIOS_INTERPOSE(int, pthread_rwlock_init, pthread_rwlock_t* l, const pthread_rwlockattr_t*) {
@@ -334,10 +334,10 @@ ROBIOS_INTERPOSE(int, pthread_barrier_wait, pthread_barrier_t* b) {
   Barrier& barrier = barrier_of(b);
   if (++barrier.here >= barrier.wanted) {
     barrier.here = 0;
-    if (attached()) grant_all(b);
+    if (in_task()) grant_all(b);
     return PTHREAD_BARRIER_SERIAL_THREAD;
   }
-  if (attached()) wait_in_queue(b, never);
+  if (in_task()) wait_in_queue(b, never);
   return 0;
 }
 
@@ -355,7 +355,7 @@ ROBIOS_INTERPOSE(int, pthread_spin_trylock, pthread_spinlock_t* l) {
 ROBIOS_INTERPOSE(int, pthread_spin_lock, pthread_spinlock_t* l) {
   enter_thread();
   if (*l != 0) {
-    if (!attached()) return EDEADLK;
+    if (!in_task()) return EDEADLK;
     wait_in_queue(const_cast<int*>(l), never);
   }
   *l = 1;
@@ -363,7 +363,7 @@ ROBIOS_INTERPOSE(int, pthread_spin_lock, pthread_spinlock_t* l) {
 }
 ROBIOS_INTERPOSE(int, pthread_spin_unlock, pthread_spinlock_t* l) {
   enter_thread();
-  *l = attached() && grant(const_cast<int*>(l)) ? 1 : 0;
+  *l = in_task() && grant(const_cast<int*>(l)) ? 1 : 0;
   return 0;
 }
 
@@ -371,13 +371,13 @@ ROBIOS_INTERPOSE(int, pthread_once, pthread_once_t* once, void (*code)(void)) {
   enter_thread();
   constexpr int running = 1, done = 2;
   while (*once == running) {
-    if (!attached()) return EDEADLK;
+    if (!in_task()) return EDEADLK;
     wait_in_queue(once, never);
   }
   if (*once == done) return 0;
   *once = running;
   code();
   *once = done;
-  if (attached()) grant_all(once);
+  if (in_task()) grant_all(once);
   return 0;
 }
