@@ -137,6 +137,11 @@ add_test(NAME started_programs COMMAND Python3::Interpreter tests/started_progra
 set_tests_properties(started_programs PROPERTIES LABELS system TIMEOUT 300
   ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
 
+# Matches and tournaments of teams, as people use them.
+add_test(NAME match COMMAND Python3::Interpreter tests/match_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(match PROPERTIES LABELS system TIMEOUT 300
+  ENVIRONMENT "SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot;${SANDLOT_TEST_ENVIRONMENT}")
+
 # A base station of the middle-size league at the referee box, as docs/referee_box.md says.
 add_test(NAME refbox COMMAND Python3::Interpreter tests/refbox_test.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(refbox PROPERTIES LABELS system TIMEOUT 300

@@ -69,9 +69,9 @@ struct Package {
 TEST(SlowInstall, TheCommandFindsItsScenariosAndModelsWhereverItStands) {
   const Package package;
   const std::string summary = package.scratch.file("s.json");
-  const Printed demo = package.run("demo --headless --duration 1s --summary " + summary);
+  const Printed demo = package.run("demo yard --headless --duration 1s --summary " + summary);
   ASSERT_EQ(demo.exit_code, 0) << demo.out;
-  EXPECT_EQ(read_json(summary)["state_hash"], summary_of("scenarios/demo.yaml --duration 1s")["state_hash"]);
+  EXPECT_EQ(read_json(summary)["state_hash"], summary_of("scenarios/yard.yaml --duration 1s")["state_hash"]);
   EXPECT_THAT(package.run("--version").out, HasSubstr("sandlot 0."));
 }
 

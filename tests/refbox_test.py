@@ -98,6 +98,26 @@ class Box(unittest.TestCase):
         self.assertEqual(self.summary()["state_hash"], attacked["state_hash"])
         self.assertEqual(attacked["refbox"]["teams"][0]["wrong"], 1)
 
+    def test_poses_that_are_no_numbers_are_counted_and_change_nothing(self):
+        nan, inf = float("nan"), float("inf")  # as Python writes them, which is not JSON
+        wrong = [{"robots": [{"id": 1, "pose": [nan, 0, 0]}]}, {"robots": [{"id": 1, "pose": [0, inf, 0]}]},
+                 {"robots": [{"id": 1, "pose": [0, 0, -inf]}]}, {"robots": [{"id": 1, "pose": ["nan", 0, 0]}]},
+                 {"robots": [{"id": 1, "pose": [1e300, 0, 0]}]}, {"robots": [{"id": 1, "pose": None}]},
+                 {"balls": [{"position": [nan, nan, nan]}]}, {"obstacles": [{"position": [0, nan]}]}]
+        port = self.start()
+        cyan, magenta = self.station(port), self.station(port)
+        for state in wrong:
+            cyan.send_world_state(**state)
+        # The connection stays, and what is right is taken.
+        cyan.send_world_state(robots=[{"id": 1, "pose": [1, 2, 0]}])
+        magenta.send_world_state(robots=[{"id": 1, "pose": [1, 2, 0]}])
+        attacked = self.summary()
+        cyan_report, magenta_report = attacked["refbox"]["teams"]
+        self.assertEqual((cyan_report["wrong"], cyan_report["world_states"]), (len(wrong), 1))
+        self.assertEqual((magenta_report["wrong"], magenta_report["world_states"]), (0, 1))
+        self.start()
+        self.assertEqual(self.summary()["state_hash"], attacked["state_hash"])
+
     def test_wrong_flags_are_named(self):
         self.assertIn("--refbox-teams: magenta is missing", self.refuse("--refbox=0", "--refbox-teams", "cyan=127.0.0.1"))
         self.assertIn("is neither json nor 2009", self.refuse("--refbox=0", "--refbox-protocol", "xml"))

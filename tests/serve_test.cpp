@@ -99,7 +99,7 @@ TEST(Serve, ARunWithoutAPageThatIsPausedEndsWithAReason) {
 }
 
 TEST(Serve, DemosAreListedAndAnUnknownOneNamesThoseThereAre) {
-  EXPECT_THAT(sandlot("demo list").out, AllOf(HasSubstr("demo\n"), HasSubstr("indoor\n")));
+  EXPECT_THAT(sandlot("demo list").out, AllOf(HasSubstr("yard\n"), HasSubstr("indoor\n")));
   const Printed unknown = sandlot("demo nothing --headless");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.out, HasSubstr("known are: ball, beach"));

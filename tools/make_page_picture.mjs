@@ -1,4 +1,4 @@
-// Takes the README's picture: the demo on its page, in Debian's Chromium. `./dev test` installs what it needs.
+// Takes the README's picture: the yard on its page, in Debian's Chromium. `./dev test` installs what it needs.
 //
 //   node tools/make_page_picture.mjs [FILE]      FILE is docs/images/page.png when left out
 import { chromium } from "../tests/js/node_modules/playwright-core/index.mjs";
@@ -7,7 +7,7 @@ import { Viewer } from "../tests/js/viewer.mjs";
 
 const file = process.argv[2] ?? "docs/images/page.png";
 const scratch = new Scratch();
-const served = await Served.start(["demo"], scratch);
+const served = await Served.start(["demo", "yard"], scratch);
 const viewer = new Viewer(served.ws, "foxglove.websocket.v1");
 let status;
 await viewer.subscribe("/sandlot/status", (s) => { status = s; });

@@ -171,7 +171,7 @@ def world():
                   + part("ring", cylinder(1.3, 0.004), BLUE, (0, -0.4, 0.0025), solid=False)
                   + part("disc", cylinder(1.1, 0.004), "0.9 0.88 0.8", (0, -0.4, 0.004), solid=False))
     return ('<?xml version="1.0"?>\n'
-            "<!-- A fenced yard of 16 x 12 m to play in, made by tools/make_playground.py. scenarios/demo.yaml puts robots into it. -->\n"
+            "<!-- A fenced yard of 16 x 12 m to play in, made by tools/make_playground.py. scenarios/yard.yaml puts robots into it. -->\n"
             '<sdf version="1.9">\n  <world name="playground">\n    <gravity>0 0 -9.81</gravity>\n'
             "    <scene><ambient>0.55 0.57 0.6 1</ambient><background>0.6 0.75 0.9 1</background></scene>\n"
             '    <light name="sun" type="directional"><pose>0 0 12 0 0 0</pose><cast_shadows>true</cast_shadows>'

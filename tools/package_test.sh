@@ -11,9 +11,9 @@ trap '[[ -z $server ]] || kill "$server" 2>/dev/null || true; rm -rf "$scratch"'
 say() { printf '   %s\n' "$*"; }
 die() { printf 'package_test: %s\n' "$*" >&2; exit 1; }
 
-# hash_of PROGRAM: the state after one simulated second of the demo, the program started elsewhere than in the source tree
+# hash_of PROGRAM: the state after one simulated second of the yard, the program started elsewhere than in the source tree
 hash_of() {
-  (cd "$scratch" && "$1" demo --headless --duration 1s --json) |
+  (cd "$scratch" && "$1" demo yard --headless --duration 1s --json) |
     python3 -c 'import json, sys; print(json.load(sys.stdin)["state_hash"])'
 }
 
@@ -51,7 +51,7 @@ check_program() {
   "$1" doctor >"$scratch/doctor" || die "doctor: $(cat "$scratch/doctor")"
   grep -q "^ok  *page  *built in" "$scratch/doctor" || die "there is no page: $(cat "$scratch/doctor")"
   grep -qF "$2/share/sandlot/" "$scratch/doctor" || die "uses files of somewhere else: $(cat "$scratch/doctor")"
-  (cd "$scratch" && exec "$1" demo --port 0 >"$scratch/served" 2>&1) &
+  (cd "$scratch" && exec "$1" demo yard --port 0 >"$scratch/served" 2>&1) &
   server=$!
   local address=
   for _ in {1..600}; do

@@ -2,6 +2,7 @@
 /// Verbs of the `sandlot` command. Each takes parsed options and returns an exit code: 0 ok, 1 the run
 /// failed, 2 the input is wrong.
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,10 +58,24 @@ struct RunOptions {
   int at_a_time = 0;             ///< of those; 0: as many as the machine has processors
 };
 int run(const RunOptions& options);
+/// Functions of a caller of run_once(); both may be empty.
+struct RunWatch {
+  /// Before programs are started. Errors: nothing is run.
+  std::function<Status(Simulation&)> on_world;
+  /// Some times a second of wall time, with the clients that have come up to now. False: the run ends.
+  std::function<bool(const std::vector<ClientSummary>&)> goes_on;
+};
 /// One run, with its server and the programs that it starts. Prints warnings and, where asked for, progress.
-/// @param outside  out: paths of the programs that run outside this process, "cyan1/player"; null: not asked
-Result<Summary> run_once(const RunOptions& options, bool shows_progress,
-                         std::vector<std::string>* outside = nullptr);
+Result<Summary> run_once(const RunOptions& options, bool shows_progress, const RunWatch& watch = {});
+
+/// Folders of the Python client library, installed or in the source tree.
+std::vector<std::string> client_folders();
+
+struct DemoOptions {
+  std::string name;  ///< of a scenario that comes with Sandlot; "": a match; list: print the names
+  RunOptions run;    ///< its file is set there
+};
+int demo(const DemoOptions& options);
 
 struct MatchSpec;
 /// Plays two teams' software against each other; app/match.h.
@@ -71,6 +86,7 @@ struct ReplayOptions {
   bool verify = false;  ///< compare every tick
   bool logged = false;  ///< the controllers' orders come from the log
   std::optional<double> until_s;
+  std::optional<double> from_s;  ///< with `serve`: shows the recording from there
   int threads = 1;
   SnapshotOptions snapshots;
   std::string summary_file;

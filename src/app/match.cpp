@@ -9,14 +9,18 @@
 
 #include "app/demos.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "formats/scenario/scenario.h"
+#include "sim/world/simulation.h"
 
 namespace sandlot::app {
 namespace {
 
 constexpr std::array<const char*, 2> sides{"cyan", "magenta"};
 constexpr int walk_over_goals = 3;
-constexpr double most_missed = 0.5;
+constexpr double most_missed = 0.5;          // of the steps of a team's programs
+constexpr std::uint64_t enough_steps = 500;  // of a team, after which the game does not wait for it any more
+constexpr double most_deadline_s = 1, most_patience_s = 60;
 
 /// YAML of a text, whatever is in it.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
@@ -30,6 +34,35 @@ bool is_of(std::string_view path, std::string_view side) {
   return (digits > 0 || rest.empty()) && (rest.empty() || rest.front() == '/');
 }
 
+/// Steps of the programs of a team that clients were to answer.
+struct Steps {
+  std::size_t programs = 0, silent = 0;
+  std::uint64_t steps = 0, misses = 0;
+
+  bool too_late() const {
+    return steps > 0 && static_cast<double>(misses) > most_missed * static_cast<double>(steps);
+  }
+};
+
+Steps steps_of(const char* side, const std::vector<std::string>& outside,
+               const std::vector<ClientSummary>& clients) {
+  Steps out;
+  for (const std::string& path : outside) {
+    if (!is_of(path, side)) continue;
+    ++out.programs;
+    bool answered = false;
+    for (const ClientSummary& client : clients) {
+      if (client.drives.empty() || !(path == client.drives || path.starts_with(client.drives + "/")))
+        continue;
+      out.steps += client.steps;
+      out.misses += client.misses;
+      answered = answered || client.steps > client.misses;
+    }
+    out.silent += !answered;
+  }
+  return out;
+}
+
 /// Why the team on a side has lost by rule; "": it has not.
 std::string fault_of(const char* side, const std::vector<std::string>& outside, const Summary& summary) {
   for (const std::string& error : summary.errors)
@@ -39,26 +72,27 @@ std::string fault_of(const char* side, const std::vector<std::string>& outside, 
         if (is_of(from.substr(0, from.find_first_of("'\": ,;")), side))
           return "its software failed: " + error;
       }
-  std::size_t programs = 0, silent = 0;
-  std::uint64_t steps = 0, misses = 0;
-  for (const std::string& path : outside) {
-    if (!is_of(path, side)) continue;
-    ++programs;
-    bool answered = false;
-    for (const ClientSummary& client : summary.clients) {
-      if (client.drives.empty() || !(path == client.drives || path.starts_with(client.drives + "/")))
-        continue;
-      steps += client.steps;
-      misses += client.misses;
-      answered = answered || client.steps > client.misses;
-    }
-    silent += !answered;
-  }
-  if (programs == 0) return "";
-  if (silent == programs) return "none of its programs answered";
-  if (steps > 0 && static_cast<double>(misses) > most_missed * static_cast<double>(steps))
-    return fmt::format("its programs missed {} of {} steps", misses, steps);
+  const Steps all = steps_of(side, outside, summary.clients);
+  if (all.programs == 0) return "";
+  if (all.silent == all.programs) return "none of its programs answered";
+  if (all.too_late()) return fmt::format("its programs missed {} of {} steps", all.misses, all.steps);
   return "";
+}
+
+/// Refuses a program of a team that may hold up the game.
+Status check_time(const model::ControllerDecl& program) {
+  const auto check = [&](const char* key, double most_s) -> Status {
+    const Node* const written = program.config.find(key);
+    if (!written || !written->is_scalar()) return {};
+    const auto time_s = parse_quantity(written->text(), "s");
+    if (!time_s || *time_s <= most_s) return {};  // what cannot be read was refused before
+    return written->error(fmt::format("a match waits at most {} s ({}), here {} s", number_text(most_s), key,
+                                      number_text(*time_s)),
+                          fmt::format("write {}: {} s", key, number_text(most_s)));
+  };
+  if (!program.config.is_map()) return {};
+  SL_TRY(check("deadline", most_deadline_s));
+  return check("patience", most_patience_s);
 }
 
 }  // namespace
@@ -89,7 +123,24 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
   run.spec.overrides.insert(run.spec.overrides.begin(), overrides.begin(), overrides.end());
 
   std::vector<std::string> outside;
-  SL_ASSIGN(out.summary, run_once(run, shows_progress, &outside));
+  const RunWatch watch{
+      .on_world =
+          [&](Simulation& world) {
+            Status status;
+            world.for_each_outside([&](const SimulationParts::ProgramEntry& entry, const Outside&) {
+              outside.push_back(entry.path);
+              if (status) status = check_time(entry.decl);
+            });
+            return status;
+          },
+      .goes_on =
+          [&](const std::vector<ClientSummary>& clients) {
+            return std::none_of(sides.begin(), sides.end(), [&](const char* side) {
+              const Steps all = steps_of(side, outside, clients);
+              return all.steps >= enough_steps && all.too_late();
+            });
+          }};
+  SL_ASSIGN(out.summary, run_once(run, shows_progress, watch));
   const Summary& summary = out.summary;
   MatchResult& result = out.result;
   result.swapped = spec.swap;

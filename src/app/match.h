@@ -4,7 +4,9 @@
 /// Sides    the first team plays as cyan, which begins at negative x, unless `swap` says otherwise.
 /// Result   goals by the rule `referee`. A team loses by 0:3, or by what it lost by if that is more, when the programs of all its
 ///          robots never answered, when they missed more than half of their steps, or when a controller of it failed and ended
-///          the run. Where that holds for both, there is no winner.
+///          the run. Where that holds for both, there is no winner. The game ends early when a team has missed more than half of
+///          500 steps or more.
+/// Waiting  a program's deadline is 1 s at most, its patience 60 s: a team may not hold up the game.
 #include <array>
 #include <optional>
 #include <string>
@@ -58,7 +60,7 @@ struct Match {
 };
 
 /// @param shows_progress  on the terminal
-/// Errors   a folder without a team, a scenario that cannot be built: nothing was played.
+/// Errors   a folder without a team, a scenario that cannot be built, a program with too long a deadline: nothing was played.
 Result<Match> play_match(const MatchSpec& spec, bool shows_progress);
 
 }  // namespace sandlot::app

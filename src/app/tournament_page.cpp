@@ -8,6 +8,9 @@
 #include "app/papers/page.h"
 #include "app/tournament.h"
 #include "draw/plan.h"
+#include "messages/cdr.h"
+#include "messages/sandlot_soccer.h"
+#include "record/mcap/reader.h"
 
 namespace sandlot::app {
 namespace {
@@ -48,28 +51,40 @@ std::string strengths_svg(const std::vector<TableRow>& table) {
   return out + "</svg>\n";
 }
 
+std::string score_text(const GameRow& game) {
+  return game.played ? fmt::format("{} : {}", game.goals_left, game.goals_right) : "-";
+}
+
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// Link from the page of the tournament to a file of a game.
+std::string link_to(const std::string& file) { return file.empty() ? "" : "games/" + file_name(file); }
 
 void add_games(ReportPage& page, const TournamentSummary& summary) {
   page.heading("Games");
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<ReportPage::Cell>> rows;
   bool recorded = false;
   for (const GameRow& game : summary.games) {
     recorded = recorded || !game.recording.empty();
-    rows.push_back({fmt::format("{}{}", game.round, game.replay ? ", replay" : ""), game.left,
-                    fmt::format("{} : {}", game.goals_left, game.goals_right), game.right,
-                    std::to_string(game.seed), game.walk_over ? "walk-over: " + game.reason : game.reason,
-                    hash_text(game.state_hash.value), file_name(game.recording)});
+    const std::string end = !game.played ? "not played: " : game.walk_over ? "walk-over: " : "";
+    rows.push_back({{fmt::format("{}{}", game.round, game.replay ? ", replay" : "")},
+                    {game.left},
+                    {score_text(game), game.recording.empty() ? "" : link_to(game_page_file(game.recording))},
+                    {game.right},
+                    {std::to_string(game.seed)},
+                    {end + game.reason},
+                    {game.played ? hash_text(game.state_hash.value) : ""},
+                    {file_name(game.recording), link_to(game.recording)}});
   }
   page.paragraph(
       "The team on the left began at negative x. The hash is that of the state at the end: the same game "
       "again gives the same.");
-  page.table({"round", "left", "goals", "right", "seed", "end", "hash", "recording"}, rows);
+  page.rich_table({"round", "left", "goals", "right", "seed", "end", "hash", "recording"}, rows);
   if (recorded)
     page.paragraph(
-        "Watch a recording with: sandlot replay games/NAME --port 8765. Its time line has the referee's "
-        "decisions, and begins again from any "
-        "of them.");
+        "The goals lead to the page of the game: the referee's decisions, each with the command that shows "
+        "the "
+        "recording from there.");
 }
 
 }  // namespace
@@ -77,6 +92,9 @@ void add_games(ReportPage& page, const TournamentSummary& summary) {
 std::string tournament_page(const TournamentSummary& summary, const std::string& source) {
   ReportPage page(fmt::format("Tournament: {}", summary.format), source);
   if (!summary.ended) page.paragraph("This tournament is not at its end. The same command goes on with it.");
+  if (summary.not_played > 0)
+    page.paragraph(fmt::format("{} of its games could not be played; they are in no table but that of games.",
+                               summary.not_played));
   page.heading("Table");
   std::vector<std::vector<std::string>> rows;
   bool byes = false;
@@ -120,6 +138,56 @@ std::string tournament_page(const TournamentSummary& summary, const std::string&
   page.paragraph("Mean difference of goals, with Student's interval for 95 %.");
   page.table({"team", "against", "games", "won", "tied", "lost", "difference"}, rows);
   add_games(page, summary);
+  return page.html();
+}
+
+Result<std::vector<RecordedDecision>> decisions_of(const std::string& recording) {
+  SL_ASSIGN(const mcap::Reader reader, mcap::Reader::open(recording));
+  const std::string topic = "/rules/referee/decision";
+  std::vector<RecordedDecision> out;
+  if (!reader.find_channel(topic)) return out;
+  mcap::Cursor cursor = reader.messages({.topics = {topic}});
+  for (;;) {
+    SL_ASSIGN(const mcap::Message* const message, cursor.next());
+    if (!message) return out;
+    msg::RefereeDecision decision;
+    SL_TRY(read_cdr(message_info<msg::RefereeDecision>(), message->data, &decision));
+    out.push_back({static_cast<double>(message->log_time) * 1e-9, decision.rule, decision.team,
+                   decision.robot, decision.reason, decision.score});
+  }
+}
+
+std::string game_page_file(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension(".html").string();
+}
+
+std::string game_page(const GameRow& game, const std::vector<RecordedDecision>& decisions) {
+  constexpr double before_s = 3;  // what led to a decision
+  ReportPage page(
+      fmt::format("{} {} {}", game.left, score_text(game), game.right),
+      fmt::format("Round {}, seed {}. {} began at negative x, as cyan. {}.", game.round, game.seed, game.left,
+                  game.walk_over ? "Walk-over: " + game.reason : "End: " + game.reason));
+  const std::string file = file_name(game.recording);
+  page.rich_table({"", ""}, {{{"recording"}, {file, file}},
+                             {{"watch it"}, {fmt::format("sandlot replay {} --port 8765", file), "", true}},
+                             {{"prove it"}, {fmt::format("sandlot replay {} --verify", file), "", true}}});
+  page.heading("Decisions of the referee");
+  page.paragraph(
+      fmt::format("Commands are for the folder of this page. They show the recording from {} s before the "
+                  "decision on; the page "
+                  "they name plays it on, and goes to any other moment.",
+                  before_s));
+  std::vector<std::vector<ReportPage::Cell>> rows;
+  for (const RecordedDecision& each : decisions)
+    rows.push_back({{fmt::format("{:.2f}", each.time_s)},
+                    {each.score.size() == 2 ? fmt::format("{} : {}", each.score[0], each.score[1]) : ""},
+                    {each.rule},
+                    {each.robot.empty() ? each.team : each.robot},
+                    {each.reason},
+                    {fmt::format("sandlot replay {} --port 8765 --from {:.2f}s", file,
+                                 std::max(0.0, each.time_s - before_s)),
+                     "", true}});
+  page.rich_table({"time [s]", "score", "rule", "of", "reason", "replay from here"}, rows);
   return page.html();
 }
 

@@ -72,17 +72,20 @@ void add_export(CommandLine& line, CLI::App& topic_verb) {
 
 struct ReplayFlags {
   ReplayOptions options;
-  DurationOption until, snapshot_at;
+  DurationOption until, from, snapshot_at;
   bool recompute = false;
   ServeFlags serve;
   std::string rate;
 
   Status finish() {
     SL_TRY(until.read("--until", options.until_s));
+    SL_TRY(from.read("--from", options.from_s));
     SL_TRY(snapshot_at.read("--snapshot-at", options.snapshots.at_s));
     SL_TRY(check_snapshot_options(options.snapshots));
     SL_TRY(serve.finish(options.serve));
     SL_TRY(read_rate(rate.empty() ? "1" : rate, options.rate));
+    if (options.from_s && !options.serve)
+      return Error{"--from is for looking at the recording", "add --port 8765"};
     if (!rate.empty() && !options.serve)
       return Error{"--rate is for looking at the recording", "add --port 8765"};
     return {};
@@ -102,6 +105,8 @@ void add_replay(CommandLine& line) {
   verb->add_flag("--logged", options.logged, "Controllers do not run: their orders come from the log")
       ->excludes(recompute_flag);
   verb->add_option("--until", flags.until.text, "Simulated time at which to end, such as 10s");
+  verb->add_option("--from", flags.from.text,
+                   "With --port: simulated time to begin at, paused, such as '62.5 s'");
   verb->add_option("--threads", options.threads, "Threads; 0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
@@ -113,7 +118,9 @@ void add_replay(CommandLine& line) {
   flags.serve.add_to(*verb);
   verb->add_option("--rate", flags.rate, "With --port: 1 is real time; max: as fast as possible");
   add_json(*verb, options.json);
-  verb->footer("Example: sandlot replay r.mcap --verify\n         sandlot replay r.mcap --port 8765");
+  verb->footer(
+      "Example: sandlot replay r.mcap --verify\n         sandlot replay r.mcap --port 8765\n         sandlot "
+      "replay r.mcap --port 8765 --from 60s");
   verb->callback([&line, &flags] {
     const Status status = flags.finish();
     line.result = status ? replay(flags.options) : complain(status.error());

@@ -1,7 +1,6 @@
 /// Options of the verbs that run something, or talk to a run: run, demo, console.
 #include <CLI/CLI.hpp>
 
-#include "app/demos.h"
 #include "app/flags.h"
 #include "app/match.h"
 #include "app/options/options.h"
@@ -177,26 +176,24 @@ void add_run(CommandLine& line) {
 
 void add_demo(CommandLine& line) {
   RunFlags& flags = line.keep<RunFlags>();
-  std::string& name = line.keep<std::string>("demo");
-  CLI::App* const verb = line.app.add_subcommand("demo",
-                                                 "Show a scenario that comes with Sandlot, on a page");
-  verb->add_option("name", name, "Name of a file in scenarios/; list: print the names")
-      ->capture_default_str();
+  std::string& name = line.keep<std::string>();
+  CLI::App* const verb = line.app.add_subcommand(
+      "demo", "Show a match of robot soccer, or another scenario that comes with Sandlot, on a page");
+  verb->add_option("name", name,
+                   "Name of a file in scenarios/; list: print the names; left out: a match, at the level of "
+                   "detail that this machine runs in real time");
   flags.add_to(*verb);
   verb->footer(
       "Example: sandlot demo                                     and open the page it names\n"
+      "         sandlot demo yard                                a yard full of robots\n"
       "         sandlot demo indoor --headless --duration 20s    only the summary");
   verb->callback([&line, &flags, &name] {
-    if (name == "list") return void(line.result = list_demos());
     ServeFlags& serve = flags.serve;
     // The usual port, or one near it: a demo should begin.
     if (!serve.port && !flags.headless) serve.port = 8765, serve.options.next_free = true;
     Status status = flags.finish();
     if (!status) return void(line.result = complain(status.error()));
-    auto file = demo_file(name);
-    if (!file) return void(line.result = complain(file.error()));
-    flags.options.spec.file = *file;
-    line.result = run(flags.options);
+    line.result = demo({name, flags.options});
   });
 }
 

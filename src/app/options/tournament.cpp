@@ -11,7 +11,7 @@ namespace {
 
 struct TournamentFlags {
   TournamentOptions options;
-  DurationOption duration;
+  DurationOption duration, game_limit;
   std::string format = "round-robin";
   std::vector<std::string> sets;
 
@@ -23,6 +23,9 @@ struct TournamentFlags {
     std::optional<double> played_s;
     SL_TRY(duration.read("--duration", played_s));
     if (played_s) options.match.half_s = *played_s / 2;
+    SL_TRY(game_limit.read("--game-limit", options.game_limit_s));
+    if (options.game_limit_s && !(*options.game_limit_s > 0))
+      return Error{"--game-limit: a game needs some time", "give more, such as '30 min'"};
     return read_sets(sets, options.match.run.spec.overrides);
   }
 };
@@ -56,6 +59,10 @@ void add_tournament(CommandLine& line) {
   verb->add_option("--jobs", options.jobs,
                    "Games at a time; as many as the machine has processors if left out")
       ->check(CLI::Range(1, 1024));
+  verb->add_option(
+      "--game-limit", flags.game_limit.text,
+      "Wall time after which a game is ended and counts as not played, such as '30 min'; if left out an "
+      "hour, or 20 times --duration where that is longer");
   verb->add_flag("!--no-recordings", options.records, "Record no game");
   verb->add_option("--level", options.match.sense, "Level of the robots' senses")
       ->check(CLI::IsMember({"image", "objects", "world"}));

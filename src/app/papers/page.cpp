@@ -42,12 +42,27 @@ void ReportPage::paragraph(std::string_view text) {
 
 void ReportPage::table(const std::vector<std::string>& names,
                        const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::vector<Cell>> cells;
+  for (const auto& row : rows) {
+    cells.emplace_back();
+    for (const std::string& text : row) cells.back().push_back({text});
+  }
+  rich_table(names, cells);
+}
+
+void ReportPage::rich_table(const std::vector<std::string>& names,
+                            const std::vector<std::vector<Cell>>& rows) {
   body_ += "<div class=\"table\"><table>\n<tr>";
   for (const std::string& name : names) body_ += fmt::format("<th>{}</th>", draw::xml_text(name));
   body_ += "</tr>\n";
   for (const auto& row : rows) {
     body_ += "<tr>";
-    for (const std::string& cell : row) body_ += fmt::format("<td>{}</td>", draw::xml_text(cell));
+    for (const Cell& cell : row) {
+      std::string text = draw::xml_text(cell.text);
+      if (cell.is_command) text = "<code>" + text + "</code>";
+      if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", draw::xml_text(cell.link), text);
+      body_ += "<td>" + text + "</td>";
+    }
     body_ += "</tr>\n";
   }
   body_ += "</table></div>\n";

@@ -62,6 +62,9 @@ int play(const ReplayOptions& options) {
                    .input_log = std::move(run.input_log),
                    .on_world = [&](Simulation&, const std::string&) { check.begin_again(); }});
   session.add_observer(&check);
+  if (options.from_s)
+    if (const Status within = session.jump(Time::from_s(*options.from_s)); !within)
+      return complain({"--from " + number_text(*options.from_s) + " s: " + within.error().what});
   Console console(session, {.paths = options.paths});
   auto served = Served::start(*options.serve, session, console);
   if (!served) return complain(served.error());

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -48,16 +49,6 @@ int run_again(const RunOptions& options) {
              : exit_failed;
 }
 
-/// Folders of client libraries, installed and in the source tree.
-std::vector<std::string> client_folders() {
-  std::vector<std::string> out;
-  if (const std::string installed = own_folder("python/sandlot_client"); !installed.empty())
-    out.push_back(std::filesystem::path(installed).parent_path().string());
-  else if (std::string source = own_folder("clients/python"); !source.empty())
-    out.push_back(std::move(source));
-  return out;
-}
-
 /// Starts the server, if there is a page or a program that it starts.
 Status serve(const RunOptions& options, const RunParts& parts, std::optional<Served>& served) {
   std::string program;
@@ -99,7 +90,16 @@ Status serve(const RunOptions& options, const RunParts& parts, std::optional<Ser
 
 }  // namespace
 
-Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::vector<std::string>* outside) {
+std::vector<std::string> client_folders() {
+  std::vector<std::string> out;
+  if (const std::string installed = own_folder("python/sandlot_client"); !installed.empty())
+    out.push_back(std::filesystem::path(installed).parent_path().string());
+  else if (std::string source = own_folder("clients/python"); !source.empty())
+    out.push_back(std::move(source));
+  return out;
+}
+
+Result<Summary> run_once(const RunOptions& options, bool shows_progress, const RunWatch& watch) {
   RunSpec spec = options.spec;
   spec.steered = options.serve.has_value();
   spec.starts_clients = true;
@@ -108,6 +108,8 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::ve
   Progress progress;
   std::optional<Served> served;
   std::optional<ServedRefbox> refbox;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point looked = Clock::now();
   // Held back until there is a page, so that its log has them, too.
   std::vector<std::string> held;
   bool ready = !options.serve;
@@ -124,17 +126,13 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::ve
           },
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
+        if (watch.on_world) SL_TRY(watch.on_world(parts.session.simulation()));
         catch_interrupts();  // before there are processes and folders of theirs to be left
         SL_TRY(serve(options, parts, served));
         if (!options.refbox.at.empty()) {
           SL_ASSIGN(refbox, ServedRefbox::start(options.refbox, parts.session));
         }
         release();
-        if (outside)
-          parts.session.simulation().for_each_outside(
-              [&](const SimulationParts::ProgramEntry& entry, const Outside&) {
-                outside->push_back(entry.path);
-              });
         if (options.verbose)
           for (const sandlot::Finding& each : lint_file(options.spec.file, options.spec.overrides,
                                                         options.spec.paths, parts.session.simulation()))
@@ -145,6 +143,10 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, std::ve
           [&](const Simulation& simulation) {
             if (served) served->count_viewers();
             if (shows_progress) progress.update(simulation);
+            if (watch.goes_on && served && Clock::now() - looked > std::chrono::milliseconds(200)) {
+              looked = Clock::now();
+              if (!watch.goes_on(served->clients())) return false;
+            }
             return !interrupted();
           },
       .on_end =

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,12 +15,17 @@
 #include <set>
 
 #include "app/demos.h"
+#include "app/game_process.h"
 #include "app/interrupt.h"
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "base/program.h"
 #include "base/text.h"
+#include "files/resources.h"
+#include "files/text.h"
+#include "files/yaml.h"
+#include "programs/child.h"
 #include "run/fields_json.h"
 
 namespace sandlot::app {
@@ -62,6 +68,14 @@ Result<std::string> options_of(const MatchSpec& match) {
     SL_ASSIGN(const std::string content, tournament::content_of(parts.string()));
     add("parts " + content);
   }
+  if (const std::string models = own_folder("models"); !models.empty()) {
+    SL_ASSIGN(const std::string content, tournament::content_of(models));
+    add("models " + content);
+  }
+  for (const std::string& folder : client_folders()) {
+    SL_ASSIGN(const std::string content, tournament::content_of(folder));
+    add("clients " + content);
+  }
   for (const std::string& file : program_files()) {
     SL_ASSIGN(const std::string content, file_hash(file));
     add("program " + content);
@@ -69,24 +83,69 @@ Result<std::string> options_of(const MatchSpec& match) {
   return out;
 }
 
-Result<tournament::GameResult> play(const TournamentOptions& options, const tournament::Match& game) {
-  MatchSpec spec = options.match;
-  for (std::size_t i = 0; i < 2; ++i) spec.teams[i] = game.teams[i].folder;
-  spec.run.spec.seed = game.game.seed;
-  spec.run.spec.threads = 1;
-  spec.run.spec.record_file = game.recording;
-  SL_ASSIGN(const Match played, play_match(spec, false));
-  const MatchResult& result = played.result;
-  // A run that failed for no team's fault is no result.
-  if (!played.summary.errors.empty() && result.walk_over.empty()) return Error{played.summary.errors.front()};
-  tournament::GameResult out;
-  out.goals = result.goals;
-  out.walk_over = !result.walk_over.empty();
-  out.reason = out.walk_over ? result.walk_over : played.summary.stopped;
-  out.state_hash = result.state_hash;
-  out.sim_s = result.sim_s;
-  out.recording = result.recording;
-  return out;
+/// What a team depends on outside its folder, as far as its team.yaml names it.
+class Outside {
+ public:
+  explicit Outside(const std::string& folder) : folder_(fs::weakly_canonical(folder, ignored_)) {}
+
+  /// @param base  folder that names are relative to
+  void look_at(const Node& node, const fs::path& base) {
+    if (node.is_scalar()) add(base / node.text());
+    for (const Node& item : node.items()) look_at(item, base);
+    fs::path within = base;
+    if (const Node* const folder = node.is_map() ? node.find("folder") : nullptr;
+        folder && folder->is_scalar()) {
+      within = base / folder->text();
+      if (!is_inside(within) && fs::is_directory(within, ignored_)) folders_.insert(canonical(within));
+    }
+    for (const Node::Entry& entry : node.entries()) {
+      look_at(entry.value, within);
+      if (entry.key != "command" || entry.value.items().empty()) continue;
+      const char* const path = std::getenv("PATH");
+      add(programs::find_program(entry.value.items().front().text(), within.string(), path ? path : ""));
+    }
+  }
+
+  /// `content` with what was found; as it is where there is nothing.
+  Result<std::string> add_to(std::string content) const {
+    for (const std::string& file : files_) {
+      SL_ASSIGN(const std::string hash, file_hash(file));
+      content += " " + hash;
+    }
+    for (const std::string& folder : folders_) {
+      SL_ASSIGN(const std::string hash, tournament::content_of(folder));
+      content += " " + hash;
+    }
+    return content;
+  }
+
+ private:
+  std::string canonical(const fs::path& path) { return fs::weakly_canonical(path, ignored_).string(); }
+  bool is_inside(const fs::path& path) {
+    const fs::path relative = fs::weakly_canonical(path, ignored_).lexically_relative(folder_);
+    return !relative.empty() && *relative.begin() != "..";
+  }
+  void add(const fs::path& path) {
+    if (!path.empty() && fs::is_regular_file(path, ignored_) && !is_inside(path))
+      files_.insert(canonical(path));
+  }
+
+  std::error_code ignored_;
+  fs::path folder_;
+  std::set<std::string> files_, folders_;
+};
+
+Result<std::string> team_content(const formats::TeamSoftware& software, const std::string& folder) {
+  SL_ASSIGN(std::string content, tournament::content_of(folder));
+  SL_ASSIGN(const std::string text, read_text_file(software.file, TextLimits{}.max_bytes));
+  SL_ASSIGN(const Node root, parse_yaml(text, software.file));
+  Outside outside(folder);
+  outside.look_at(root, folder);
+  return outside.add_to(std::move(content));
+}
+
+double game_limit_s(const TournamentOptions& options) {
+  return options.game_limit_s.value_or(std::max(3600.0, 40 * options.match.half_s.value_or(0)));
 }
 
 Status write_files(const TournamentOptions& options, const TournamentSummary& summary) {
@@ -96,6 +155,11 @@ Status write_files(const TournamentOptions& options, const TournamentSummary& su
   SL_TRY(write("table.csv", table_csv(summary)));
   SL_TRY(write("pairs.csv", pairs_csv(summary)));
   SL_TRY(write("games.csv", games_csv(summary)));
+  for (const GameRow& game : summary.games) {
+    if (game.recording.empty()) continue;
+    SL_ASSIGN(const std::vector<RecordedDecision> decisions, decisions_of(game.recording));
+    SL_TRY(write_file(game_page_file(game.recording), game_page(game, decisions)));
+  }
   SL_TRY(write("tournament.json", json_text(fields_json(summary)) + "\n"));
   std::string source = fmt::format("Made by `sandlot tournament --format {} --seeds {}", summary.format,
                                    options.games);
@@ -129,7 +193,7 @@ Result<std::vector<Team>> teams_of(const std::vector<std::string>& folders) {
   for (const std::string& folder : found) {
     SL_ASSIGN(const formats::TeamSoftware software, formats::read_team_software(folder));
     Team team{software.name, "", folder};
-    SL_ASSIGN(team.content, tournament::content_of(folder));
+    SL_ASSIGN(team.content, team_content(software, folder));
     for (int i = 2; !names.insert(sanitised(team.name)).second; ++i)
       team.name = fmt::format("{} {}", software.name, i);
     out.push_back(std::move(team));
@@ -160,14 +224,23 @@ int play_tournament(const TournamentOptions& options) {
   const auto show = [&](const GameRow& game) {
     ++ended;
     if (options.json) return;
+    if (!game.played) {
+      fmt::print("{:>5}  round {}  {} - {}  not played: {}\n", ended, game.round, game.left, game.right,
+                 game.reason);
+      std::fflush(stdout);
+      return;
+    }
     fmt::print("{:>5}  round {}  {} {} : {} {}{}{}\n", ended, game.round, game.left, game.goals_left,
                game.goals_right, game.right, game.stored ? "  (from the store)" : "",
                game.walk_over ? "  walk-over: " + game.reason : "");
     std::fflush(stdout);
   };
   const auto summary = tournament::play_tournament(
-      spec, [&](const tournament::Match& game) { return play(options, game); }, show,
-      [] { return !interrupted(); });
+      spec,
+      [&](const tournament::Match& game) {
+        return play_in_process(match_arguments(options.match, game), game_limit_s(options));
+      },
+      show, [] { return !interrupted(); });
   if (!summary) return complain(summary.error());
   if (Status written = write_files(options, *summary); !written) return complain(written.error());
   if (options.json) fmt::print("{}\n", json_text(fields_json(*summary)));

@@ -67,9 +67,10 @@ std::string as_text(const TournamentSummary& summary) {
   }
   const auto walk_overs = std::count_if(summary.games.begin(), summary.games.end(),
                                         [](const GameRow& row) { return row.walk_over; });
-  out += fmt::format("{}, {} games", summary.format, summary.games.size());
+  out += fmt::format("{}, {} games", summary.format, summary.games.size() - summary.not_played);
   if (summary.stored > 0) out += fmt::format(", {} of them from the store", summary.stored);
   if (walk_overs > 0) out += fmt::format(", {} by walk-over", walk_overs);
+  if (summary.not_played > 0) out += fmt::format(", {} more could not be played", summary.not_played);
   out += summary.ended ? "\n" : "; not at its end: start it again to go on\n";
   out += "strength: in log units from the mean, by Davidson's law of ties; intervals for 95 %\n";
   return out;

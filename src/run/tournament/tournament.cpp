@@ -112,6 +112,13 @@ GameRow row_of(const Match& match, const GameResult& result, bool stored) {
   return out;
 }
 
+GameRow row_without_result(const Match& match, const Error& why) {
+  GameRow out = row_of(match, {}, false);
+  out.played = false;
+  out.reason = why.text();
+  return out;
+}
+
 std::string note_of(const statistics::Rating& rating, const statistics::Ratings& all,
                     const Standing& standing) {
   using statistics::Bound;
@@ -227,7 +234,7 @@ class Round {
     }
     auto result = play_(match);
     if (keep_going_ && !keep_going_()) return std::optional<GameRow>();
-    if (!result) return Error{match.name + ": " + result.error().text()};
+    if (!result) return std::optional(row_without_result(match, result.error()));
     const std::lock_guard lock(mutex_);
     SL_TRY(results_.add(spec_, match, *result));
     return std::optional(row_of(match, *result, false));
@@ -261,8 +268,13 @@ Result<TournamentSummary> play_tournament(const TournamentSpec& spec, const Play
     if (out.ended) break;
     SL_ASSIGN(const auto rows, Round(spec, results, play, on_game, keep_going).run(games));
     for (std::size_t i = 0; i < games.size(); ++i) {
-      whole = whole && rows[i];
+      whole = whole && rows[i] && rows[i]->played;
       if (!rows[i]) continue;
+      if (!rows[i]->played) {
+        ++out.not_played;
+        out.games.push_back(*rows[i]);
+        continue;
+      }
       played.push_back({games[i], {rows[i]->goals_left, rows[i]->goals_right}});
       out.stored += rows[i]->stored;
       out.games.push_back(*rows[i]);

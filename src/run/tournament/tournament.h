@@ -10,8 +10,9 @@
 ///
 /// Store    an experiment per pair of contents, sides and options; `stopped` is the reason, criterion '' has the difference of goals, its
 ///          `success` is false for a walk-over; criteria 'left' and 'right' have the goals.
-/// Limits   results of teams with equal contents are those of one team. A team that depends on files outside its folder is known by its
-///          folder alone.
+/// Failures a game without a result stays open: it is named, the other games of its round are played, and those of later rounds wait for it.
+///          The same command again plays it again.
+/// Limits   results of teams with equal contents are those of one team. The caller says what a team's content is.
 #include <functional>
 #include <optional>
 #include <string>
@@ -61,14 +62,14 @@ struct GameResult {
   std::string recording;  ///< file; "": none
 };
 
-/// Plays a game; called from several threads at a time. An error means that there is no result, and ends the tournament.
+/// Plays a game; called from several threads at a time. An error means that there is no result, and says why.
 using PlayGame = std::function<Result<GameResult>(const Match& match)>;
 
 struct GameRow {
   int round = 1;
   std::string left, right;
   int goals_left = 0, goals_right = 0;
-  bool walk_over = false, replay = false, stored = false;
+  bool played = true, walk_over = false, replay = false, stored = false;
   std::uint64_t seed = 0;
   double sim_s = 0;
   std::string reason, recording;
@@ -81,9 +82,12 @@ struct GameRow {
     visit(Field{"goals_left", "1", "Goals of the team on the left."}, s.goals_left);
     visit(Field{"goals_right", "1", "Goals of the other team."}, s.goals_right);
     visit(Field{"seed", "1", "Seed of the game."}, s.seed);
+    visit(Field{"played", "", "Whether there is a result."}, s.played);
     visit(Field{"walk_over", "", "Whether a team lost by rule."}, s.walk_over);
     visit(Field{"replay", "", "Whether the game decided a tie."}, s.replay);
-    visit(Field{"reason", "", "Reason for the end of the game or for the walk-over."}, s.reason);
+    visit(Field{"reason", "",
+                "Reason for the end of the game, for the walk-over, or for its not being played."},
+          s.reason);
     visit(Field{"sim_seconds", "s", "Simulated time."}, s.sim_s);
     visit(Field{"state_hash", "", "Hash of the state at the end."}, s.state_hash);
     visit(Field{"recording", "", "File of the recording; empty for none."}, s.recording);
@@ -140,7 +144,7 @@ struct TournamentSummary {
   std::string format;
   bool ended = false;  ///< all games have been played
   double tie = 0;
-  std::uint64_t stored = 0, groups = 0;
+  std::uint64_t stored = 0, not_played = 0, groups = 0;
   std::vector<TableRow> table;
   std::vector<PairRow> pairs;
   std::vector<GameRow> games;
@@ -154,14 +158,14 @@ struct TournamentSummary {
     visit(Field{"tie_parameter", "", "Parameter of ties in Davidson's law."}, s.tie);
     visit(Field{"groups", "1", "Number of groups of teams that no game connects."}, s.groups);
     visit(Field{"stored", "1", "Number of games whose results were taken from the store."}, s.stored);
+    visit(Field{"not_played", "1", "Number of games that were begun and gave no result."}, s.not_played);
   }
 };
 
-/// @param on_game     called after each game, also a stored one, by one thread at a time; may be empty
+/// @param on_game     called after each game, also a stored one or one without a result, by one thread at a time; may be empty
 /// @param keep_going  asked before and after each game, from several threads; false: no further game is begun, and the one that has just
 ///                    been played may have been cut short and does not count
-/// Errors   of the schedule, two teams of one name, a store that cannot be read or written, the first error of a game. What had been played
-///          by then is in the store.
+/// Errors   of the schedule, two teams of one name, a store that cannot be read or written. What had been played by then is in the store.
 Result<TournamentSummary> play_tournament(const TournamentSpec& spec, const PlayGame& play,
                                           const std::function<void(const GameRow&)>& on_game = {},
                                           const std::function<bool()>& keep_going = {});

@@ -224,19 +224,58 @@ TEST(Tournament, RecordingsOfStoredGamesAreFoundAgain) {
   EXPECT_EQ(second.games[1].recording, "");
 }
 
-TEST(Tournament, AGameThatCannotBePlayedEndsItAndWhatWasPlayedIsKept) {
+TEST(Tournament, AGameWithoutAResultIsNamedAndTheOthersOfItsRoundArePlayed) {
   const TestFolder folder;
   const TournamentSpec spec = spec_of(Format::round_robin, 3, 2, folder.file("results.db"));
+  std::string failed;
   int count = 0;
-  const auto refused = play_tournament(spec, [&](const Match& match) -> Result<GameResult> {
-    if (++count == 4) return Error{"no such scenario"};
-    return chance(match);
+  const auto fails_once = [&](const Match& match) -> Result<GameResult> {
+    if (++count != 4) return chance(match);
+    failed = match.teams[0].name + match.teams[1].name;
+    return Error{"it was ended by signal 11"};
+  };
+  std::string shown;
+  const auto first = play_tournament(spec, fails_once, [&](const GameRow& row) {
+    if (!row.played) shown += row.left + row.right;
   });
-  ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().text(), HasSubstr("r1_"));
-  EXPECT_THAT(refused.error().text(), HasSubstr("no such scenario"));
-  EXPECT_EQ(count, 4);
-  EXPECT_EQ(played(spec).stored, 3u);
+  ASSERT_TRUE(first) << first.error().text();
+  EXPECT_FALSE(first->ended);
+  EXPECT_EQ(first->not_played, 1u);
+  EXPECT_EQ(count, 6);
+  EXPECT_EQ(shown, failed);
+  ASSERT_EQ(first->games.size(), 6u);
+  const GameRow& row = first->games[3];
+  EXPECT_FALSE(row.played);
+  EXPECT_EQ(row.left + row.right, failed);
+  EXPECT_THAT(row.reason, HasSubstr("signal 11"));
+  // Two teams have played three games, one all four.
+  int games = 0;
+  for (const TableRow& team : first->table) games += team.played;
+  EXPECT_EQ(games, 10);
+  EXPECT_THAT(as_text(*first), HasSubstr("5 games, 1 more could not be played; not at its end"));
+  EXPECT_THAT(games_csv(*first), HasSubstr(",false,false,false,it was ended by signal 11,"));
+  // Once more: it alone.
+  const TournamentSummary second = played(spec);
+  EXPECT_TRUE(second.ended);
+  EXPECT_EQ(second.stored, 5u);
+  EXPECT_EQ(second.not_played, 0u);
+  EXPECT_EQ(outcome(second), outcome(played(spec_of(Format::round_robin, 3, 2))));
+}
+
+TEST(Tournament, LaterRoundsWaitForAGameWithoutAResult) {
+  const TestFolder folder;
+  const TournamentSpec spec = spec_of(Format::knockout, 4, 1, folder.file("results.db"));
+  const auto without_d = [&](const Match& match) -> Result<GameResult> {
+    if (match.teams[0].name == "D" || match.teams[1].name == "D") return Error{"no"};
+    GameResult out = chance(match);
+    out.goals = {1, 0};
+    return out;
+  };
+  const auto first = play_tournament(spec, without_d);
+  ASSERT_TRUE(first) << first.error().text();
+  EXPECT_FALSE(first->ended);
+  ASSERT_EQ(first->games.size(), 2u);  // both semi-finals, not the final
+  EXPECT_EQ(first->not_played, 1u);
 }
 
 TEST(Tournament, RefusesTwoTeamsOfOneNameAndStoresThatAreNone) {
@@ -261,7 +300,7 @@ TEST(TournamentReports, HaveALineForEachRow) {
   const GameRow& game = all.games[0];
   EXPECT_THAT(games_csv(all),
               HasSubstr("1," + game.left + "," + game.right + "," + std::to_string(game.goals_left) + "," +
-                        std::to_string(game.goals_right) + ",1,false,false,the game ended,60.5," +
+                        std::to_string(game.goals_right) + ",1,true,false,false,the game ended,60.5," +
                         hash_text(game.state_hash.value) + ",,false\n"));
   EXPECT_THAT(as_text(all), HasSubstr("round-robin, 6 games"));
 }

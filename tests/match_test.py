@@ -1,0 +1,267 @@
+"""`sandlot match` and `sandlot tournament` as people use them: results, exit codes, and teams that are wrong, late, silent or hostile."""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import sandbox
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+SANDLOT = os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/sandlot"))
+SHORT = ["--level", "world", "--drive", "ideal", "--physics", "planar", "--size", "12x8", "--set", "break=0.5", "--set", "players=2"]
+OURS = "teams/run_and_kick"
+
+# A robot that answers each step by standing still.
+ANSWERS = """
+from sandlot_client import Robot
+with Robot() as robot:
+    for step in robot.steps():
+        %s
+"""
+
+
+class Match(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        os.chmod(self.scratch.name, 0o755)  # also for `nobody`, when the tests run as root
+
+    def file(self, name):
+        return os.path.join(self.scratch.name, name)
+
+    def team(self, name, robots, program=None, head=""):
+        """A folder with a team.yaml."""
+        folder = self.file(name.lower())
+        os.mkdir(folder)
+        with open(os.path.join(folder, "team.yaml"), "w") as file:
+            file.write("version: 1\nname: %s\n%srobots:\n  - %s\n" % (name, head, robots))
+        if program is not None:
+            with open(os.path.join(folder, "player.py"), "w") as file:
+                file.write(program)
+        return folder
+
+    def program_team(self, name, program, keys=""):
+        """A team whose robots run `program`."""
+        return self.team(name, "{controller: {kind: remote, command: [python3, player.py], folder: ., rate: 25, deadline: 0.5 s%s}}"
+                         % (", " + keys if keys else ""), program)
+
+    def sandlot(self, *arguments, code=0, timeout=100):
+        done = subprocess.run([SANDLOT, *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=timeout)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def play(self, *arguments, code=0, short=SHORT):
+        """The result of a match as JSON; with another exit code what it said."""
+        done = self.sandlot("match", *arguments, *short, *(["--json"] if code == 0 else []), code=code)
+        return json.loads(done.stdout) if code == 0 else done.stderr
+
+
+class Play(Match):
+    def test_a_match_ends_with_a_result_a_summary_and_a_recording_that_replays(self):
+        recording, summary = self.file("match.mcap"), self.file("match.json")
+        result = self.play("teams/passing", OURS, "--duration", "6 s", "--record", recording, "--summary", summary, "--seed", "3")
+        self.assertEqual(result["names"], ["Passing", "Run and kick"])
+        self.assertTrue(result["ended"])
+        self.assertEqual(result["walk_over"], "")
+        self.assertEqual(result["seed"], 3)
+        self.assertEqual(result["recording"], recording)
+        with open(summary) as file:
+            written = json.load(file)
+        self.assertEqual(written["state_hash"], result["state_hash"])
+        self.assertEqual(result["goals"], [int(written["criteria"][side]["value"]) for side in ("cyan", "magenta")])
+        # Every tick of it again, by the recording alone.
+        replayed = json.loads(self.sandlot("replay", recording, "--verify", "--json").stdout)
+        self.assertTrue(replayed["verified"])
+        self.assertEqual(replayed["state_hash"], result["state_hash"])
+        # The decisions are those of the game, from its beginning to its end.
+        echoed = self.sandlot("topic", "echo", recording, "/rules/referee/decision", "--json").stdout
+        decisions = [json.loads(line)["message"] for line in echoed.splitlines()]
+        self.assertEqual([each["rule"] for each in decisions][:2], ["begin", "start"])
+        self.assertEqual(decisions[-1]["rule"], "end")
+        self.assertIn("half_time", [each["rule"] for each in decisions])
+        self.assertEqual([each["sequence"] for each in decisions], list(range(1, len(decisions) + 1)))
+        self.assertEqual(decisions[-1]["score"], result["goals"])
+        for each in decisions:
+            self.assertEqual(len(each["players"]), 4, each)
+            self.assertTrue(each["reason"])
+
+    def test_sides_are_exchanged_and_threads_change_nothing(self):
+        one = self.play("teams/passing", OURS, "--duration", "3 s")
+        self.assertEqual(self.play("teams/passing", OURS, "--duration", "3 s", "--threads", "2")["state_hash"], one["state_hash"])
+        # The other way round and exchanged: the same game, told from the other side.
+        swapped = self.play(OURS, "teams/passing", "--duration", "3 s", "--swap")
+        self.assertEqual(swapped["state_hash"], one["state_hash"])
+        self.assertEqual(swapped["goals"], one["goals"][::-1])
+
+    def test_text_for_people_has_score_and_seed(self):
+        said = self.sandlot("match", "teams/passing", OURS, *SHORT, "--duration", "2 s", "--seed", "5").stdout
+        self.assertRegex(said, r"^Passing \d+ : \d+ Run and kick")
+        self.assertIn("seed 5; hash ", said)
+
+    def test_a_team_without_goalkeeper_or_with_fewer_robots_plays(self):
+        alone = self.team("Alone", "{controllers: [{name: player, kind: soccer_player, play: run_and_kick, size: '${size}', keeper: 0,"
+                          " attacks_positive_x: '${attacks_positive_x}', placed: true, start: '${start}'}]}", head="players: 1\n")
+        result = self.play(alone, OURS, "--duration", "2 s")
+        self.assertEqual(result["walk_over"], "")
+        self.assertTrue(result["ended"])
+        self.assertEqual(sorted(each["name"] for each in result["summary"]["robots"]), ["cyan1", "magenta1", "magenta2"])
+
+    def test_a_controller_that_fails_in_the_game_loses_by_rule(self):
+        # It names a reading that is no laser.
+        broken = self.team("Broken", "{controller: {kind: wander, laser: nothing}}")
+        said = self.play(broken, OURS, "--duration", "2 s", code=2)
+        self.assertIn("broken/team.yaml:4", said)
+        self.assertIn("nothing", said)
+
+
+class Mistakes(Match):
+    def test_a_folder_without_a_team_is_named_with_the_remedy(self):
+        said = self.play("docs", OURS, code=2)
+        self.assertIn("there is no team in 'docs'", said)
+        self.assertIn("team.yaml", said)
+        self.assertIn("no/where", self.play(OURS, "no/where", code=2))
+
+    def test_a_wrong_key_is_named_with_file_and_line(self):
+        self.assertIn("wrong/team.yaml:3", self.play(self.team("Wrong", "{controller: wander}", head="colour: red\n"), OURS, code=2))
+        said = self.play(self.team("Robot", "{controler: wander}"), OURS, code=2)
+        self.assertIn("robot/team.yaml:4", said)
+        self.assertIn("did you mean 'controller'", said)
+
+    def test_seven_robots_are_too_many_for_five(self):
+        said = self.play(self.team("Many", "{controller: wander}", head="players: 7\n"), OURS, "--set", "players=5", code=2)
+        self.assertIn("many/team.yaml", said)
+        self.assertIn("the team brings 7 robots, and 5 may play", said)
+
+    def test_a_deadline_that_holds_up_the_game_is_refused(self):
+        said = self.play(self.team("Slow", "{controller: {kind: remote, command: [python3, player.py], deadline: 20 s}}", ""), OURS, code=2)
+        self.assertIn("slow/team.yaml:4", said)
+        self.assertIn("write deadline: 1 s", said)
+
+    def test_options_that_cannot_be_are_named(self):
+        self.assertIn("--level", self.sandlot("match", OURS, OURS, "--level", "smell", code=2).stderr)
+        self.assertIn("--record", self.sandlot("match", OURS, OURS, "--record", self.file("match.txt"), code=2).stderr)
+
+
+class Programs(Match):
+    def setUp(self):
+        sandbox.skip_without(self)
+        super().setUp()
+
+    def loses(self, folder, reason, *arguments, duration="2 s"):
+        """It loses by rule as the second team, and the other one wins by three goals at least."""
+        result = self.play(OURS, folder, "--duration", duration, *arguments)
+        self.assertIn(reason, result["walk_over"])
+        self.assertEqual(result["winner"], "Run and kick")
+        self.assertGreaterEqual(result["goals"][0] - result["goals"][1], 3)
+        return result
+
+    def test_a_program_that_ends_at_once_loses_by_rule(self):
+        result = self.loses(self.program_team("Absent", "raise SystemExit('not today')"),
+                            "Absent loses by rule: none of its programs answered")
+        self.assertEqual(result["goals"], [3, 0])
+        self.assertTrue(result["ended"])
+
+    def test_a_program_that_never_connects_loses_by_rule(self):
+        self.loses(self.program_team("Silent", "import time\ntime.sleep(1000)", "patience: 0.5 s"), "none of its programs answered")
+
+    def test_a_program_that_stalls_loses_by_rule_before_the_end(self):
+        # Two robots miss 25 steps a second each: 500 after ten seconds of a game of forty.
+        late = self.program_team("Late", ANSWERS % "import time; time.sleep(0.1)", "deadline: 5 ms")
+        result = self.loses(late, "Late loses by rule: its programs missed", duration="40 s")
+        self.assertFalse(result["ended"])
+        self.assertLess(result["sim_seconds"], 40)
+
+    def test_a_program_that_floods_harms_nobody(self):
+        flood = self.program_team("Flood", ANSWERS % (
+            "[robot.command('drive', {'linear': {'x': float(i % 3)}}) for i in range(300)]; print('x' * 5000)"))
+        result = self.play(OURS, flood, "--duration", "2 s")
+        self.assertTrue(result["ended"])
+        self.assertEqual(result["summary"]["errors"], [])
+
+    def test_a_program_that_crashes_midway_leaves_the_game_to_the_others(self):
+        crash = self.program_team("Crash", ANSWERS % "os.abort() if step.number > 20 else None", "restart: never").replace("\0", "")
+        with open(os.path.join(crash, "player.py")) as file:
+            text = file.read()
+        with open(os.path.join(crash, "player.py"), "w") as file:
+            file.write("import os\n" + text)
+        done = self.sandlot("match", OURS, crash, *SHORT, "--duration", "3 s", "--json")
+        result = json.loads(done.stdout)
+        self.assertTrue(result["ended"])
+        self.assertRegex(done.stderr, r"magenta[12]/controller.*signal 6")
+
+    def test_nonsense_in_answers_is_counted_and_orders_nothing(self):
+        mad = self.program_team("Mad", ANSWERS % "robot.command('drive', {'linear': {'x': float('nan')}}); robot.command('wings', {})")
+        result = self.play(OURS, mad, "--duration", "2 s")
+        self.assertTrue(result["ended"])
+
+    def test_the_python_team_plays_in_lockstep(self):
+        result = self.play("examples/soccer_team", OURS, "--duration", "4 s", "--level", "objects",
+                           short=[each for each in SHORT if each not in ("--level", "world")])
+        self.assertEqual(result["names"], ["Python", "Run and kick"])
+        self.assertEqual(result["walk_over"], "")
+        for client in result["summary"]["clients"]:
+            self.assertGreater(client["steps"], 100)
+            self.assertEqual(client["misses"], 0)
+
+
+class Tournament(Match):
+    def cup(self, *arguments, code=0):
+        return self.sandlot("tournament", *arguments, "--out", self.file("cup"), *SHORT, "--jobs", "2", code=code)
+
+    def read(self, name="tournament.json"):
+        with open(os.path.join(self.file("cup"), name)) as file:
+            return json.load(file) if name.endswith(".json") else file.read()
+
+    def test_each_decision_has_a_command_that_shows_the_game_from_there(self):
+        self.cup("teams/passing", OURS, "--duration", "2 s", "--seeds", "1")
+        page = self.read("index.html")
+        self.assertIn('href="games/r1_Passing_Run_and_kick_s1.html"', page)
+        self.assertIn('href="games/r1_Passing_Run_and_kick_s1.mcap"', page)
+        game = self.read("games/r1_Passing_Run_and_kick_s1.html")
+        self.assertIn("<td>half_time</td>", game)
+        self.assertIn("sandlot replay r1_Passing_Run_and_kick_s1.mcap --port 8765 --from 0.00s", game)
+
+    def test_a_game_that_cannot_be_played_is_named_and_the_others_are_played(self):
+        bad = self.team("Bad", "{controller: {kind: wander, laser: nothing}}")
+        said = self.cup("teams/passing", OURS, bad, "--duration", "1 s", "--seeds", "1", code=1).stdout
+        self.assertIn("not played: ", said)
+        self.assertIn("bad/team.yaml:4", said)
+        self.assertIn("1 games, 2 more could not be played; not at its end", said)
+        games = self.read()["games"]
+        self.assertEqual([each["played"] for each in games].count(False), 2)
+        self.assertEqual({team["team"]: team["played"] for team in self.read()["table"]}, {"Passing": 1, "Run and kick": 1, "Bad": 0})
+        # Mended: only those two are played.
+        shutil.copy(os.path.join(ROOT, OURS, "team.yaml"), os.path.join(bad, "team.yaml"))
+        with open(os.path.join(bad, "team.yaml")) as file:
+            text = file.read().replace("name: Run and kick", "name: Bad")
+        with open(os.path.join(bad, "team.yaml"), "w") as file:
+            file.write(text)
+        self.cup("teams/passing", OURS, bad, "--duration", "1 s", "--seeds", "1")
+        self.assertTrue(self.read()["ended"])
+        self.assertEqual(self.read()["stored"], 1)
+
+    def test_a_game_has_its_time(self):
+        # A game of ten minutes is not played in a tenth of a second.
+        said = self.cup("teams/passing", OURS, "--duration", "600 s", "--seeds", "1", "--game-limit", "0.1 s", code=1).stdout
+        self.assertIn("not played: it took longer than 0.1 s", said)
+        self.assertEqual(self.read()["not_played"], 1)
+
+    def test_what_a_team_names_outside_its_folder_counts(self):
+        def write(text):
+            with open(self.file("common.py"), "w") as file:
+                file.write(text)
+
+        sandbox.skip_without(self)
+        write("raise SystemExit(1)")
+        one = self.team("One", "{controller: {kind: remote, command: [python3, ../common.py], folder: .}}")
+        arguments = ("teams/passing", one, "--duration", "1 s", "--seeds", "1")
+        for text, stored in (("raise SystemExit(1)", 0), ("raise SystemExit(1)", 1), ("raise SystemExit(2)", 0)):
+            write(text)
+            self.cup(*arguments)
+            self.assertEqual(self.read()["stored"], stored, text)
+
+
+if __name__ == "__main__":
+    unittest.main()
