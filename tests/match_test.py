@@ -10,7 +10,10 @@ import sandbox
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SANDLOT = os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/sandlot"))
-SHORT = ["--level", "world", "--drive", "ideal", "--physics", "planar", "--size", "12x8", "--set", "break=0.5", "--set", "players=2"]
+SHORT = ["--level", "world", "--drive", "ideal", "--physics", "planar", "--size", "12x8"]
+for key, value in (("players", "2"), ("break", "0.5"), ("rules[0].stop_time", "0.1"), ("rules[0].prepare_min", "0.1"),
+                   ("rules[0].prepare_max", "0.5")):
+    SHORT += ["--set", key + "=" + value]
 OURS = "teams/run_and_kick"
 
 # A robot that answers each step by standing still.
@@ -44,8 +47,7 @@ class Match(unittest.TestCase):
 
     def program_team(self, name, program, keys=""):
         """A team whose robots run `program`."""
-        return self.team(name, "{controller: {kind: remote, command: [python3, player.py], folder: ., rate: 25, deadline: 0.5 s%s}}"
-                         % (", " + keys if keys else ""), program)
+        return self.team(name, "{controller: {kind: remote, command: [python3, player.py], folder: ., rate: 25, %s}}" % (keys or "deadline: 0.5 s"), program)
 
     def sandlot(self, *arguments, code=0, timeout=100):
         done = subprocess.run([SANDLOT, *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=timeout)
@@ -78,7 +80,8 @@ class Play(Match):
         # The decisions are those of the game, from its beginning to its end.
         echoed = self.sandlot("topic", "echo", recording, "/rules/referee/decision", "--json").stdout
         decisions = [json.loads(line)["message"] for line in echoed.splitlines()]
-        self.assertEqual([each["rule"] for each in decisions][:2], ["begin", "start"])
+        self.assertEqual(decisions[0]["rule"], "begin")
+        self.assertIn("start", [each["rule"] for each in decisions])
         self.assertEqual(decisions[-1]["rule"], "end")
         self.assertIn("half_time", [each["rule"] for each in decisions])
         self.assertEqual([each["sequence"] for each in decisions], list(range(1, len(decisions) + 1)))
@@ -108,8 +111,7 @@ class Play(Match):
         self.assertTrue(result["ended"])
         self.assertEqual(sorted(each["name"] for each in result["summary"]["robots"]), ["cyan1", "magenta1", "magenta2"])
 
-    def test_a_controller_that_fails_in_the_game_loses_by_rule(self):
-        # It names a reading that is no laser.
+    def test_a_robot_that_cannot_be_built_is_named_and_nothing_is_played(self):
         broken = self.team("Broken", "{controller: {kind: wander, laser: nothing}}")
         said = self.play(broken, OURS, "--duration", "2 s", code=2)
         self.assertIn("broken/team.yaml:4", said)
@@ -119,7 +121,7 @@ class Play(Match):
 class Mistakes(Match):
     def test_a_folder_without_a_team_is_named_with_the_remedy(self):
         said = self.play("docs", OURS, code=2)
-        self.assertIn("there is no team in 'docs'", said)
+        self.assertRegex(said, r"there is no team in '.*/docs'")
         self.assertIn("team.yaml", said)
         self.assertIn("no/where", self.play(OURS, "no/where", code=2))
 
@@ -129,10 +131,10 @@ class Mistakes(Match):
         self.assertIn("robot/team.yaml:4", said)
         self.assertIn("did you mean 'controller'", said)
 
-    def test_seven_robots_are_too_many_for_five(self):
-        said = self.play(self.team("Many", "{controller: wander}", head="players: 7\n"), OURS, "--set", "players=5", code=2)
+    def test_seven_robots_are_too_many(self):
+        said = self.play(self.team("Many", "{controller: wander}", head="players: 7\n"), OURS, code=2)
         self.assertIn("many/team.yaml", said)
-        self.assertIn("the team brings 7 robots, and 5 may play", said)
+        self.assertIn("the team brings 7 robots, and 2 may play", said)
 
     def test_a_deadline_that_holds_up_the_game_is_refused(self):
         said = self.play(self.team("Slow", "{controller: {kind: remote, command: [python3, player.py], deadline: 20 s}}", ""), OURS, code=2)
@@ -141,6 +143,7 @@ class Mistakes(Match):
 
     def test_options_that_cannot_be_are_named(self):
         self.assertIn("--level", self.sandlot("match", OURS, OURS, "--level", "smell", code=2).stderr)
+        self.assertIn("a match takes 2 s at least", self.sandlot("match", OURS, OURS, "--duration", "1 s", code=2).stderr)
         self.assertIn("--record", self.sandlot("match", OURS, OURS, "--record", self.file("match.txt"), code=2).stderr)
 
 
@@ -164,7 +167,7 @@ class Programs(Match):
         self.assertTrue(result["ended"])
 
     def test_a_program_that_never_connects_loses_by_rule(self):
-        self.loses(self.program_team("Silent", "import time\ntime.sleep(1000)", "patience: 0.5 s"), "none of its programs answered")
+        self.loses(self.program_team("Silent", "import time\ntime.sleep(1000)", "deadline: 0.5 s, patience: 0.5 s"), "none of its programs answered")
 
     def test_a_program_that_stalls_loses_by_rule_before_the_end(self):
         # Two robots miss 25 steps a second each: 500 after ten seconds of a game of forty.
@@ -181,11 +184,8 @@ class Programs(Match):
         self.assertEqual(result["summary"]["errors"], [])
 
     def test_a_program_that_crashes_midway_leaves_the_game_to_the_others(self):
-        crash = self.program_team("Crash", ANSWERS % "os.abort() if step.number > 20 else None", "restart: never").replace("\0", "")
-        with open(os.path.join(crash, "player.py")) as file:
-            text = file.read()
-        with open(os.path.join(crash, "player.py"), "w") as file:
-            file.write("import os\n" + text)
+        crash = self.program_team("Crash", "import os\n" + ANSWERS % "os.abort() if step.number > 20 else None",
+                                  "deadline: 0.5 s, restart: never")
         done = self.sandlot("match", OURS, crash, *SHORT, "--duration", "3 s", "--json")
         result = json.loads(done.stdout)
         self.assertTrue(result["ended"])
@@ -225,7 +225,7 @@ class Tournament(Match):
 
     def test_a_game_that_cannot_be_played_is_named_and_the_others_are_played(self):
         bad = self.team("Bad", "{controller: {kind: wander, laser: nothing}}")
-        said = self.cup("teams/passing", OURS, bad, "--duration", "1 s", "--seeds", "1", code=1).stdout
+        said = self.cup("teams/passing", OURS, bad, "--duration", "2 s", "--seeds", "1", code=1).stdout
         self.assertIn("not played: ", said)
         self.assertIn("bad/team.yaml:4", said)
         self.assertIn("1 games, 2 more could not be played; not at its end", said)
@@ -238,7 +238,7 @@ class Tournament(Match):
             text = file.read().replace("name: Run and kick", "name: Bad")
         with open(os.path.join(bad, "team.yaml"), "w") as file:
             file.write(text)
-        self.cup("teams/passing", OURS, bad, "--duration", "1 s", "--seeds", "1")
+        self.cup("teams/passing", OURS, bad, "--duration", "2 s", "--seeds", "1")
         self.assertTrue(self.read()["ended"])
         self.assertEqual(self.read()["stored"], 1)
 
@@ -256,7 +256,7 @@ class Tournament(Match):
         sandbox.skip_without(self)
         write("raise SystemExit(1)")
         one = self.team("One", "{controller: {kind: remote, command: [python3, ../common.py], folder: .}}")
-        arguments = ("teams/passing", one, "--duration", "1 s", "--seeds", "1")
+        arguments = ("teams/passing", one, "--duration", "2 s", "--seeds", "1")
         for text, stored in (("raise SystemExit(1)", 0), ("raise SystemExit(1)", 1), ("raise SystemExit(2)", 0)):
             write(text)
             self.cup(*arguments)

@@ -9,24 +9,25 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "example
 import player
 
 
-def state(phase, team="", attacks=True):
-    return {"phase": phase, "team": team, "teams": [{"name": "cyan", "attacks_positive_x": attacks}]}
+def state(phase, team="", attacks=True, set_piece="", in_play=None):
+    return {"phase": phase, "team": team, "teams": [{"name": "cyan", "attacks_positive_x": attacks}],
+            "set_piece": set_piece or ("free_kick" if team else ""), "in_play": phase == "running" and not team if in_play is None else in_play}
 
 
 class SoccerTeam(unittest.TestCase):
-    def seeing(self, name, ball, goal, words):
+    def seeing(self, name, ball, goal, words, home=None):
         one = player.Player(name)
         one.learn(words)
-        one.look(1.0, [{"label": "ball", "bearing": ball[0], "range": ball[1]},
-                       {"label": "goal_magenta", "bearing": goal[0], "range": goal[1]}])
+        seen = {"ball": ball, "goal_magenta": goal, "goal_cyan": home}
+        one.look(1.0, [{"label": label, "bearing": at[0], "range": at[1]} for label, at in seen.items() if at])
         return one.decide(1.0)
 
     def test_stands_until_the_game_runs(self):
-        self.assertEqual(self.seeing("cyan2", (0, 1), (0, 9), state("stopped")), (player.STAND, False, False))
+        self.assertEqual(self.seeing("cyan2", (0, 1), (0, 9), state("stopped")), (player.STAND, False, 0.0))
         self.assertGreater(self.seeing("cyan2", (0, 1), (0, 9), state("running"))[0][0], 0.5)
 
     def test_kicks_only_a_ball_in_its_arms_and_at_the_goal(self):
-        self.assertTrue(self.seeing("cyan2", (0, 0.35), (0.02, 9), state("running"))[2])
+        self.assertEqual(self.seeing("cyan2", (0, 0.35), (0.02, 9), state("running"))[2], player.KICK_IMPULSE)
         self.assertFalse(self.seeing("cyan2", (0, 0.6), (0.02, 9), state("running"))[2])
         self.assertFalse(self.seeing("cyan2", (0, 0.35), (0.5, 9), state("running"))[2])
 
@@ -37,8 +38,31 @@ class SoccerTeam(unittest.TestCase):
 
     def test_keeps_off_the_set_pieces_of_others(self):
         self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "magenta"))[0][0], -0.5)
-        self.assertLess(self.seeing("cyan3", (0, 2), (0, 9), state("preparing", "cyan"))[0][0], -0.5)
-        self.assertEqual(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "cyan"))[0], player.STAND)
+        self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "cyan"))[0][0], -0.5)
+        self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("running", "magenta"))[0][0], -0.5, "it is not in play yet")
+
+    def test_taps_its_own_set_pieces_and_leaves_the_ball_to_the_others(self):
+        def takes(ball, phase, in_play=False):
+            return self.seeing("cyan3", ball, (0, 9), state(phase, "cyan", in_play=in_play))
+        self.assertGreater(takes((0, 2), "preparing")[0][0], 0.5)
+        self.assertEqual(takes((0, player.WAIT_M), "preparing")[0][0], 0.0)
+        self.assertEqual(takes((0, 0.35), "running")[2], player.TAP_IMPULSE)
+        self.assertEqual(takes((0, 0.35), "running", in_play=True), (player.STAND, False, 0.0))
+        # As soon as another one has touched it, it plays like everybody.
+        self.assertEqual(self.seeing("cyan3", (0, 0.35), (0, 9), state("running", "", in_play=True))[2], player.KICK_IMPULSE)
+
+    def test_goes_to_its_own_half_for_a_kick_off(self):
+        words = state("preparing", "magenta", set_piece="kickoff")
+        self.assertGreater(self.seeing("cyan2", (0, 6), (math.pi, 5), words, home=(0, 17))[0][0], 1)
+        self.assertEqual(self.seeing("cyan2", (0, 6), (math.pi, 17), words, home=(0, 5))[0], player.STAND)
+
+    def test_the_keeper_stays_before_its_goal(self):
+        self.assertGreater(self.seeing("cyan1", (1, 6), (math.pi, 5), state("running"), home=(0, 17))[0][0], 1)
+        # A goal that is not seen is where the compass says: behind a robot that looks at the other one.
+        self.assertLess(self.seeing("cyan1", (1, 6), (0, 5), state("running"))[0][0], -1)
+        ahead, left, turn = self.seeing("cyan1", (1, 6), (math.pi, 20), state("running"), home=(3, 1))[0]
+        self.assertEqual((ahead, left), (0, 0))
+        self.assertGreater(turn, 1)
 
     def test_plays_the_other_way_after_half_time(self):
         one = player.Player("cyan2")

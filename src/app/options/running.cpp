@@ -221,11 +221,11 @@ void add_match(CommandLine& line) {
       "Example: sandlot match teams/passing teams/run_and_kick --duration '4 min' --record match.mcap\n"
       "         sandlot match teams/passing my_team --port 8765      and open the page it names");
   verb->callback([&line, &flags, &spec] {
-    if (Status status = flags.finish(); !status) return void(line.result = complain(status.error()));
+    Status status = flags.finish();
+    if (status) status = read_half(flags.duration, spec.half_s);
+    if (!status) return void(line.result = complain(status.error()));
     spec.run = flags.options;
-    // The length of the game, not of the run: the clock may stand.
-    if (const auto played_s = std::exchange(spec.run.spec.duration_s, std::nullopt))
-      spec.half_s = *played_s / 2;
+    spec.run.spec.duration_s.reset();  // that of the game, not of the run: the clock may stand
     line.result = match(spec);
   });
 }

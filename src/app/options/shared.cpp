@@ -6,6 +6,19 @@
 
 namespace sandlot::app {
 
+Status read_half(const DurationOption& duration, std::optional<double>& half_s) {
+  constexpr double shortest_s = 2, longest_s = 2e5;  // as rule `referee` has it
+  std::optional<double> played_s;
+  SL_TRY(duration.read("--duration", played_s));
+  if (!played_s) return {};
+  if (!(*played_s >= shortest_s && *played_s <= longest_s))
+    return Error{"--duration: a match takes " + number_text(shortest_s) + " s at least and " +
+                     number_text(longest_s) + " s at most, here " + number_text(*played_s) + " s",
+                 "write --duration '4 min'"};
+  half_s = *played_s / 2;
+  return {};
+}
+
 void add_paths(CLI::App& verb, std::vector<std::string>& paths) {
   verb.add_option("--path", paths, "Folder to search for models and other files; may be given several times")
       ->allow_extra_args(false);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/flags.h"
 #include "base/result.h"
 
 namespace CLI {
@@ -27,6 +28,9 @@ struct ServeFlags {
   /// @param out  unset without --port
   Status finish(std::optional<ServeOptions>& out);
 };
+
+/// Length of a match, both halves together, as the length of a half.
+Status read_half(const DurationOption& duration, std::optional<double>& half_s);
 
 /// "max", "" or a factor of real time.
 Status read_rate(const std::string& text, std::optional<double>& out);

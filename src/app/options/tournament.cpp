@@ -20,9 +20,7 @@ struct TournamentFlags {
     if (options.rounds > 0 && options.format != tournament::Format::swiss)
       return Error{"--rounds: only a swiss tournament has a number of rounds",
                    "leave it out, or add --format swiss"};
-    std::optional<double> played_s;
-    SL_TRY(duration.read("--duration", played_s));
-    if (played_s) options.match.half_s = *played_s / 2;
+    SL_TRY(read_half(duration, options.match.half_s));
     SL_TRY(game_limit.read("--game-limit", options.game_limit_s));
     if (options.game_limit_s && !(*options.game_limit_s > 0))
       return Error{"--game-limit: a game needs some time", "give more, such as '30 min'"};

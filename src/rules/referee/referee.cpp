@@ -300,7 +300,8 @@ struct Referee {
   // -------------------------------------------------------------------------------------------------- publishing
 
   void publish(const RuleContext& context, RuleActions& actions) {
-    if (!state.decisions.empty()) {
+    // What is decided at the beginning waits for the first tick: a message is of a tick, and recordings hold those of ticks.
+    if (!state.decisions.empty() && context.tick_index > 0) {
       decision_topic->message = std::move(state.decisions.front());
       state.decisions.erase(state.decisions.begin());
       decision_topic->publish(context.now);
