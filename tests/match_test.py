@@ -1,9 +1,14 @@
 """`sandlot match` and `sandlot tournament` as people use them: results, exit codes, and teams that are wrong, late, silent or hostile."""
+import glob
 import json
 import os
+import re
+import shlex
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import sandbox
@@ -206,9 +211,82 @@ class Programs(Match):
             self.assertEqual(client["misses"], 0)
 
 
+class Demo(Match):
+    def test_it_is_a_match_and_says_how_to_have_the_same_again(self):
+        # What every machine runs in real time; which level it is is measured.
+        run = ["--headless", "--duration", "1 s", "--json"]
+        done = self.sandlot("demo", *run, "--set", "players=1", "--set", "sense=world")
+        said = re.search(r"^match: senses world, drives (\w+), engine (\w+); measured [\d.]+ x real time$", done.stderr, re.M)
+        self.assertTrue(said, done.stderr)
+        again = re.search(r"^the same again: sandlot (.*)$", done.stderr, re.M).group(1)
+        self.assertIn("--set drive=%s --set engine=%s" % said.groups(), again)
+        first = json.loads(done.stdout)
+        self.assertEqual(first["name"], "match")
+        self.assertEqual(json.loads(self.sandlot(*shlex.split(again), *run).stdout)["state_hash"], first["state_hash"])
+
+    def test_others_have_names(self):
+        self.assertEqual(json.loads(self.sandlot("demo", "yard", "--headless", "--duration", "0.1 s", "--json").stdout)["name"], "yard")
+        self.assertIn("match\n", self.sandlot("demo", "list").stdout)
+
+
 class Tournament(Match):
+    def command(self, *arguments):
+        return ["tournament", *arguments, "--out", self.file("cup"), *SHORT, "--jobs", "2"]
+
     def cup(self, *arguments, code=0):
-        return self.sandlot("tournament", *arguments, "--out", self.file("cup"), *SHORT, "--jobs", "2", code=code)
+        return self.sandlot(*self.command(*arguments), code=code)
+
+    def games_under_way(self):
+        """Process numbers of the games of this tournament."""
+        found = []
+        for folder in glob.glob("/proc/[0-9]*"):
+            try:
+                with open(folder + "/cmdline", "rb") as file:
+                    words = file.read().decode().split("\0")
+            except OSError:
+                continue
+            if "match" in words[:2] and any(self.scratch.name in word for word in words):
+                found.append(int(os.path.basename(folder)))
+        return sorted(found)
+
+    def until(self, condition, seconds=60):
+        end = time.monotonic() + seconds
+        while not condition():
+            self.assertLess(time.monotonic(), end, "it never happened")
+            time.sleep(0.02)
+
+    def begin(self, *arguments):
+        begun = subprocess.Popen([SANDLOT, *self.command(*arguments)], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(lambda: (begun.kill(), begun.communicate()))
+        return begun
+
+    def test_a_game_that_crashes_ends_alone(self):
+        # Two long games: one is ended from outside as by a fault of its own, then the other one, asked, ends.
+        begun = self.begin("teams/passing", OURS, "--duration", "6000 s", "--seeds", "2")
+        self.until(lambda: len(self.games_under_way()) == 2)
+        one, other = self.games_under_way()
+        os.kill(one, signal.SIGSEGV)
+        line = begun.stdout.readline()
+        self.assertIn("not played: its process was ended by signal 11", line)
+        self.assertEqual(self.games_under_way(), [other])
+        begun.send_signal(signal.SIGINT)
+        out = begun.communicate(timeout=30)[0]
+        self.assertEqual(begun.returncode, 1, out)
+        self.assertIn("not at its end", out)
+        self.assertEqual(self.games_under_way(), [])
+
+    def test_it_goes_on_after_kill_and_leaves_no_game_behind(self):
+        arguments = ("teams/passing", OURS, "--duration", "4 s", "--seeds", "6")
+        begun = self.begin(*arguments)
+        self.assertRegex(begun.stdout.readline(), r"^ +1 +round 1 ")
+        begun.kill()
+        self.until(lambda: not self.games_under_way())
+        self.cup(*arguments)
+        self.assertTrue(self.read()["ended"])
+        self.assertEqual(len(self.read()["games"]), 6)
+        self.assertGreaterEqual(self.read()["stored"], 1)
+        for game in self.read()["games"]:
+            self.assertTrue(os.path.exists(os.path.join(ROOT, game["recording"])), game)
 
     def read(self, name="tournament.json"):
         with open(os.path.join(self.file("cup"), name)) as file:
