@@ -102,7 +102,7 @@ class Box(unittest.TestCase):
         nan, inf = float("nan"), float("inf")  # as Python writes them, which is not JSON
         wrong = [{"robots": [{"id": 1, "pose": [nan, 0, 0]}]}, {"robots": [{"id": 1, "pose": [0, inf, 0]}]},
                  {"robots": [{"id": 1, "pose": [0, 0, -inf]}]}, {"robots": [{"id": 1, "pose": ["nan", 0, 0]}]},
-                 {"robots": [{"id": 1, "pose": [1e300, 0, 0]}]}, {"robots": [{"id": 1, "pose": None}]},
+                 {"robots": [{"id": 1, "pose": [1e300, 0, 0]}]}, {"robots": [{"id": 1, "pose": nan}]},
                  {"balls": [{"position": [nan, nan, nan]}]}, {"obstacles": [{"position": [0, nan]}]}]
         port = self.start()
         cyan, magenta = self.station(port), self.station(port)
