@@ -9,7 +9,7 @@
 namespace sandlot {
 namespace {
 
-model::Setup loaded(const std::string& file, std::vector<formats::Override> overrides = {}) {
+model::Setup loaded_setup(const std::string& file, std::vector<formats::Override> overrides = {}) {
   Diagnostics diagnostics;
   LoadOptions options;
   options.overrides = overrides;
@@ -31,8 +31,8 @@ double range_of(const Simulation& sim, const std::string& device) {
 TEST(EyesimFiles, ARobotInAMazeMeasuresItsWalls) {
   for (const char* const engine : {"rigid", "planar"}) {
     SCOPED_TRACE(engine);
-    auto sim = test::build(
-        loaded("tests/scenarios/eyesim_maze.yaml", {{"physics", engine}, {"robots.controller", "null"}}));
+    auto sim = test::build(loaded_setup("tests/scenarios/eyesim_maze.yaml",
+                                        {{"physics", engine}, {"robots.controller", "null"}}));
     ASSERT_TRUE(sim);
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(static_cast<bool>(sim->tick()));
     // It stands in the middle of a cell of 360 mm and looks down a corridor: two walls of 10 mm are 175 mm away on either side,
@@ -45,10 +45,10 @@ TEST(EyesimFiles, ARobotInAMazeMeasuresItsWalls) {
 TEST(EyesimFiles, AScenarioRunsOnBothEnginesAndItsSensorsSeeItsMaze) {
   for (const char* const engine : {"rigid", "planar"}) {
     SCOPED_TRACE(engine);
-    auto sim = test::build(loaded("scenarios/maze.sim", {{"physics", engine},
-                                                         {"errors", "0"},
-                                                         {"robots.mouse.controller", "null"},
-                                                         {"robots.S4.controller", "null"}}));
+    auto sim = test::build(loaded_setup("scenarios/maze.sim", {{"physics", engine},
+                                                               {"errors", "0"},
+                                                               {"robots.mouse.controller", "null"},
+                                                               {"robots.S4.controller", "null"}}));
     ASSERT_TRUE(sim);
     EXPECT_EQ(sim->setup().step, Time::from_s(0.05));
     for (int i = 0; i < 10; ++i) ASSERT_TRUE(static_cast<bool>(sim->tick()));

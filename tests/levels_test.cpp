@@ -24,14 +24,14 @@ std::vector<std::vector<double>> numbers(const std::string& path) {
   return rows;
 }
 
-struct Engine {
+struct LevelsEngine {
   const char* name;
   const char* third;  ///< the level at 4 s
 };
-void PrintTo(const Engine& engine, std::ostream* out) { *out << engine.name; }
-class LevelsOnTheWay : public testing::TestWithParam<Engine> {};
+void PrintTo(const LevelsEngine& engine, std::ostream* out) { *out << engine.name; }
+class LevelsOnTheWay : public testing::TestWithParam<LevelsEngine> {};
 INSTANTIATE_TEST_SUITE_P(Engines, LevelsOnTheWay,
-                         testing::Values(Engine{"rigid", "rollers"}, Engine{"planar", "ideal"}));
+                         testing::Values(LevelsEngine{"rigid", "rollers"}, LevelsEngine{"planar", "ideal"}));
 
 /// The robot goes round at 0.3 m/s and 0.5 rad/s, 3 mm and 5 mrad per tick, and nobody tells it so again.
 /// Place and odometry go on by that in the tick of a switch as in all others. On rollers both swing by some

@@ -30,7 +30,7 @@ struct Servo {
 };
 
 /// The beam of a file with gains set to p and d at a level, commanded once.
-Servo run(const std::string& file, const char* level, double p, double d) {
+Servo lint_run(const std::string& file, const char* level, double p, double d) {
   Diagnostics diagnostics;
   auto setup = load(file, {}, diagnostics);
   if (!setup) {
@@ -73,16 +73,16 @@ TEST(LintPhysics, TheBoundOfGainsIsWhereTheLoopBecomesUnstable) {
   // J = 0.334167 kg m^2, h = 10 ms: p = 2 J / h = 66.83. 3 % beyond, the error grows by 6 % per step; within,
   // it shrinks.
   const std::string velocity = "tests/suspicious/gains_velocity_not.sdf";
-  const Servo calm = run(velocity, "velocity", 66.83 * 0.97, 0),
-              wild = run(velocity, "velocity", 66.83 * 1.03, 0);
+  const Servo calm = lint_run(velocity, "velocity", 66.83 * 0.97, 0),
+              wild = lint_run(velocity, "velocity", 66.83 * 1.03, 0);
   EXPECT_FALSE(calm.suspected);
   EXPECT_LT(calm.error, 1e-3);
   EXPECT_TRUE(wild.suspected);
   EXPECT_GT(wild.worst, 10);
   // With d = 60: p = (4 J - 2 h d) / h^2 = 1367.
   const std::string position = "tests/suspicious/gains_position_not.sdf";
-  const Servo still = run(position, "position", 1367 * 0.8, 60),
-              shaky = run(position, "position", 1367 * 1.2, 60);
+  const Servo still = lint_run(position, "position", 1367 * 0.8, 60),
+              shaky = lint_run(position, "position", 1367 * 1.2, 60);
   EXPECT_FALSE(still.suspected);
   EXPECT_LT(still.error, 1e-2);
   EXPECT_TRUE(shaky.suspected);

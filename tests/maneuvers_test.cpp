@@ -14,7 +14,7 @@ namespace {
 constexpr double pi = 3.141592653589793;
 
 /// Numbers of a CSV file by line; NaN for empty cells.
-std::vector<std::vector<double>> numbers(const std::string& path) {
+std::vector<std::vector<double>> number_node(const std::string& path) {
   std::ifstream in(path);
   std::string line;
   std::getline(in, line);
@@ -47,7 +47,7 @@ TEST_P(Maneuvers, EndWhereAndWhenTheyAreExpected) {
       "walker/drive.odometry.y,walker/drive.odometry.theta,walker/drive/maneuver.done,"
       "walker/drive/maneuver.maneuvers'");
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
-  const auto rows = numbers(scratch.file("log.csv"));
+  const auto rows = number_node(scratch.file("log.csv"));
   ASSERT_EQ(rows.size(), 1601u);
   // When, and where by the odometry, within 1 mm and 1 mrad of each goal; and in truth, where wheels slip in turns by some 2 %.
   // Goals add up.
@@ -88,7 +88,7 @@ TEST_P(Maneuvers, AWallStallsBothMotors) {
                                   "rammer/drive/maneuver.remaining_distance,"
                                   "rammer/drive/maneuver.stalled[0],rammer/drive/maneuver.stalled[1]'");
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
-  const auto rows = numbers(scratch.file("log.csv"));
+  const auto rows = number_node(scratch.file("log.csv"));
   const auto& last = rows.back();
   EXPECT_LT(last[1], 4);
   EXPECT_EQ(last[2], 0);
@@ -115,7 +115,7 @@ TEST(Maneuver, IsACommandOfTheConsole) {
       run + R"( --command 'at 0.5s command robot/drive DriveManeuver {"kind": 1, "angle": 1}' --log )" +
       scratch.file("log.csv") + " --log-values robot/drive.odometry.theta");
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
-  EXPECT_NEAR(numbers(scratch.file("log.csv")).back()[1], 1, 1e-3);
+  EXPECT_NEAR(number_node(scratch.file("log.csv")).back()[1], 1, 1e-3);
   const Printed refused = sandlot(run +
                                   R"( --command 'at 0.5s command robot/drive DriveManeuver {"kind": 7}')");
   EXPECT_NE(refused.out.find("there is no maneuver of kind 7"), std::string::npos) << refused.out;
@@ -141,7 +141,7 @@ robots:
   const Printed printed = sandlot("run " + file + " --log " + scratch.file("log.csv") +
                                   " --log-values rover/drive.odometry.x,rover/drive/maneuver.done");
   ASSERT_EQ(printed.exit_code, 0) << printed.out;
-  const auto rows = numbers(scratch.file("log.csv"));
+  const auto rows = number_node(scratch.file("log.csv"));
   // The order of 1 s acts from then on.
   EXPECT_NEAR(rows.back()[1] - rows[100][1], 0.4, 5e-3);
   EXPECT_EQ(rows.back()[2], 1);

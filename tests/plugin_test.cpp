@@ -18,7 +18,7 @@ using testing::Not;
 std::string plugins() { return (fs::absolute(SANDLOT_BIN).parent_path() / "test_plugins").string(); }
 
 /// A robot on an empty plane, driven by the given controller of the given plugin; control steps every 10 ms.
-std::string scenario(const std::string& plugin, const std::string& controller) {
+std::string plugin_scenario(const std::string& plugin, const std::string& controller) {
   return "version: 1\nname: spin\nphysics: planar\nplugins: [" + plugin +
          "]\ntime: {step: 10 ms, stop: 1 s}\nrobots:\n  - name: rover\n    model: " +
          fs::absolute("models/rover").string() + "\n    controller: " + controller + "\n";
@@ -29,11 +29,12 @@ TEST(Plugin, ItsControllerDrivesARobot) {
   // Order k, given in tick k - 1, turns by gain * k for a tick of 10 ms: after 100 ticks the sum is 0.5050
   // rad. Each begins 0.01 rad/s below its rate and gains it at 6 rad/s^2, which costs 0.01^2 / (2 * 6) rad.
   const double predicted_rad = 0.01 * 0.01 * (100 * 101 / 2) - 100 * 0.01 * 0.01 / (2 * 6);
-  const std::string here = scratch.write("here.yaml", scenario("good", "spinner"));
+  const std::string here = scratch.write("here.yaml", plugin_scenario("good", "spinner"));
   fs::copy_file(plugins() + "/good.so", scratch.file("libgood.so"));
   const std::vector<std::string> ways{
-      scratch.write("file.yaml", scenario(plugins() + "/good.so", "spinner")),
-      scratch.write("name.yaml", scenario("good", "{kind: spinner, gain: 0.01}")) + " --path " + plugins(),
+      scratch.write("file.yaml", plugin_scenario(plugins() + "/good.so", "spinner")),
+      scratch.write("name.yaml", plugin_scenario("good", "{kind: spinner, gain: 0.01}")) + " --path " +
+          plugins(),
       here,  // lib and .so are added, beside the scenario
   };
   std::string hash;
@@ -58,7 +59,7 @@ TEST(Plugin, ItsControllersAreListedWithTheirFields) {
 TEST(Plugin, ASnapshotNamesItsPluginAndGoesOnWithIt) {
   const TestFolder scratch;
   fs::copy_file(plugins() + "/good.so", scratch.file("mine.so"));
-  const std::string run = scratch.write("s.yaml", scenario("mine.so", "spinner"));
+  const std::string run = scratch.write("s.yaml", plugin_scenario("mine.so", "spinner"));
   const auto whole = summary_of(run);
   const std::string snapshot = scratch.file("half.snap");
   ASSERT_FALSE(summary_of(run + " --snapshot-at 0.5s --snapshot " + snapshot).contains("failed"));
@@ -92,7 +93,7 @@ TEST(Plugin, ASnapshotNamesItsPluginAndGoesOnWithIt) {
 TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
   const TestFolder scratch;
   const auto refused = [&](const std::string& plugin, auto&& matcher) {
-    const std::string file = scratch.write("bad.yaml", scenario(plugin, "spinner"));
+    const std::string file = scratch.write("bad.yaml", plugin_scenario(plugin, "spinner"));
     for (const char* verb : {"run ", "check "}) {
       const Printed printed = sandlot(verb + file);
       EXPECT_EQ(printed.exit_code, 2) << verb << plugin << printed.out;
@@ -122,7 +123,7 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithItsPlace) {
 TEST(Plugin, ANameThatNoControllerHasSuggestsThoseOfThePlugin) {
   const TestFolder scratch;
   const Printed printed = sandlot("check " +
-                                  scratch.write("s.yaml", scenario(plugins() + "/good.so", "spiner")));
+                                  scratch.write("s.yaml", plugin_scenario(plugins() + "/good.so", "spiner")));
   EXPECT_EQ(printed.exit_code, 2);
   EXPECT_THAT(printed.out, HasSubstr("did you mean 'spinner'?"));
 }
@@ -130,8 +131,8 @@ TEST(Plugin, ANameThatNoControllerHasSuggestsThoseOfThePlugin) {
 TEST(Plugin, AControllerThatThrowsEndsTheRunAndKeepsItsResults) {
   const TestFolder scratch;
   const auto run = [&](const std::string& end) {
-    return scratch.write("s.yaml",
-                         scenario(plugins() + "/good.so", "{kind: spinner, steps: 30, end: " + end + "}"));
+    return scratch.write(
+        "s.yaml", plugin_scenario(plugins() + "/good.so", "{kind: spinner, steps: 30, end: " + end + "}"));
   };
   const std::string summary = scratch.file("s.json"), svg = scratch.file("s.svg");
   const Printed printed = sandlot("run " + run("exception") + " --summary " + summary + " --svg " + svg);
@@ -148,12 +149,12 @@ TEST(Plugin, AControllerThatThrowsEndsTheRunAndKeepsItsResults) {
 
   // In its first step: the run has begun, so it is still a run that failed.
   const std::string first = scratch.write(
-      "first.yaml", scenario(plugins() + "/good.so", "{kind: spinner, steps: 0, end: exception}"));
+      "first.yaml", plugin_scenario(plugins() + "/good.so", "{kind: spinner, steps: 0, end: exception}"));
   EXPECT_EQ(sandlot("run " + first).exit_code, 1);
 
   // Before it: the input is wrong, and the place says where.
   const std::string start = scratch.write(
-      "start.yaml", scenario(plugins() + "/good.so", "{kind: spinner, fail_at_start: true}"));
+      "start.yaml", plugin_scenario(plugins() + "/good.so", "{kind: spinner, fail_at_start: true}"));
   const Printed refused = sandlot("run " + start);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.out, AllOf(HasSubstr(start + ":9:"), HasSubstr("no battery")));

@@ -18,7 +18,7 @@ std::string content(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-std::string scenario(const std::string& more) {
+std::string values_scenario(const std::string& more) {
   return "version: 1\nname: v\nphysics: planar\ntime: {step: 10 ms, stop: 2 s}\nrobots:\n  - name: rover\n   "
          " model: " +
          (std::filesystem::current_path() / "models/rover/model.sdf").string() +
@@ -53,7 +53,7 @@ TEST(Values, InfoListsOfEachStageOfNoiseItsOwnKeysOnly) {
   const TestFolder scratch;
   const Printed info = sandlot(
       "info --values " +
-      scratch.write("s.yaml", scenario("    devices: {laser: {noise: [{gaussian: {std: 1 cm}}]}}\n")));
+      scratch.write("s.yaml", values_scenario("    devices: {laser: {noise: [{gaussian: {std: 1 cm}}]}}\n")));
   EXPECT_THAT(info.out, HasSubstr("rover/laser.noise.stages[0].gaussian.std"));
   EXPECT_THAT(info.out, Not(HasSubstr("stages[0].drift")));
 }
@@ -74,11 +74,12 @@ TEST(Values, AScenarioNamesValuesWatchesAndLogs) {
   const TestFolder scratch;
   const std::string log = scratch.file("run.csv");
   const std::string file = scratch.write(
-      "s.yaml", scenario("values:\n  half: sim.time / 2\n  quarter: half / 2\n"
-                         "events:\n  - {name: quarter, when: quarter >= 0.25, for: 0.5 s, stop: true}\n"
-                         "  - {name: never, when: half > 100}\n"
-                         "log: {file: " +
-                         log + ", rate: 2 Hz, values: [values.half, quarter * 4 - sim.time]}\n"));
+      "s.yaml",
+      values_scenario("values:\n  half: sim.time / 2\n  quarter: half / 2\n"
+                      "events:\n  - {name: quarter, when: quarter >= 0.25, for: 0.5 s, stop: true}\n"
+                      "  - {name: never, when: half > 100}\n"
+                      "log: {file: " +
+                      log + ", rate: 2 Hz, values: [values.half, quarter * 4 - sim.time]}\n"));
   const auto s = summary_of(file);
   ASSERT_FALSE(s.contains("failed")) << s["failed"];
   EXPECT_EQ(s["end_time"], 1.5);  // a quarter of 1 s, held for 0.5 s

@@ -59,6 +59,12 @@ class Groups(unittest.TestCase):
         for body, expected in (("using sandlot::same;", [1, 1]), ("using other::same;", [1, 2])):
             self.assertEqual(batches(h_h=header, a_cpp='#include "layer/h.h"\n', b_cpp=unnamed(body)), expected, body)
 
+    def test_overloads_by_type_go_together_unless_the_types_have_one_name(self):
+        def file(name):
+            return unnamed(f"enum class {name} {{ one }};\ninline int enum_names({name}) {{\n  return 1;\n}}")
+        self.assertEqual(batches(a_cpp=file("Colour"), b_cpp=file("Shape")), [1, 1])
+        self.assertEqual(batches(a_cpp=file("Colour"), b_cpp=file("Colour")), [1, 2])
+
     def test_a_file_can_ask_to_be_alone(self):
         self.assertEqual(batches(a_cpp="// unity: alone\n", b_cpp="", c_cpp=""), [1, 2, 2])
 

@@ -21,7 +21,7 @@ bool is_unreserved(char c) {
 
 Error gone() { return {"the connection is gone: the run has ended, or the network has failed"}; }
 
-std::string text_of(const Json& object, const char* key) {
+std::string text_member(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -82,10 +82,10 @@ Result<std::unique_ptr<RemoteConsole>> RemoteConsole::connect(const std::string&
 void RemoteConsole::read_text(std::string_view text, std::uint32_t call) {
   const Json message = Json::parse(text, nullptr, false);
   if (!message.is_object()) return;
-  const std::string op = text_of(message, "op");
+  const std::string op = text_member(message, "op");
   if (op == "serverInfo") {
     if (const auto metadata = message.find("metadata"); metadata != message.end() && metadata->is_object())
-      role_ = text_of(*metadata, "sandlot_role");
+      role_ = text_member(*metadata, "sandlot_role");
   } else if (op == "advertiseServices") {
     const auto services = message.find("services");
     if (services == message.end() || !services->is_array()) return;
@@ -93,13 +93,13 @@ void RemoteConsole::read_text(std::string_view text, std::uint32_t call) {
       if (!service.is_object()) continue;
       const auto id = service.find("id");
       if (id == service.end() || !id->is_number_unsigned()) continue;
-      const std::string name = text_of(service, "name");
+      const std::string name = text_member(service, "name");
       if (name == "/sandlot/console") console_ = id->get<std::uint32_t>(), has_console_ = true;
       if (name == "/sandlot/complete") complete_ = id->get<std::uint32_t>(), has_complete_ = true;
     }
   } else if (op == "serviceCallFailure") {
     if (const auto id = message.find("callId"); id == message.end() || *id != Json(call)) return;
-    answer_ = text_of(message, "message");
+    answer_ = text_member(message, "message");
     answered_ = failed_ = true;
   }
 }
@@ -151,7 +151,7 @@ Result<RemoteAnswer> RemoteConsole::say(const std::string& line, bool (*give_up)
   const auto ok = response.is_object() ? response.find("ok") : response.end();
   if (!response.is_object() || ok == response.end() || !ok->is_boolean())
     return Error{"the server's answer is none", "is it a Sandlot of this version?"};
-  return RemoteAnswer{ok->get<bool>(), text_of(response, "text")};
+  return RemoteAnswer{ok->get<bool>(), text_member(response, "text")};
 }
 
 std::vector<std::string> RemoteConsole::complete(const std::string& line) {

@@ -6,7 +6,7 @@
 
 #include "base/describe.h"
 
-namespace sandlot {
+namespace sandlot::read_test {
 namespace {
 
 enum class Colour : std::uint8_t { red, green };
@@ -271,4 +271,4 @@ TEST(Describe, NamesEveryLeafWithItsTypeUnitAndDefault) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::read_test

@@ -12,7 +12,7 @@
 #include "base/read.h"
 #include "base/values.h"
 
-namespace sandlot {
+namespace sandlot::struct_info_test {
 namespace {
 
 enum class Colour : std::uint8_t { red, green };
@@ -300,4 +300,4 @@ TEST(StructInfo, DescribesEveryKindOfMember) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::struct_info_test

@@ -8,9 +8,8 @@
 namespace sandlot {
 namespace {
 
+using test::has;
 using test::Talk;
-
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// Rovers whose agents sense speed and turning rate of their drive; the last one is driven by another program.
 model::Setup agents(int robots, const char* agent = "sox") {

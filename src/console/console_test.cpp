@@ -8,9 +8,8 @@
 namespace sandlot {
 namespace {
 
+using test::has;
 using test::Talk;
-
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(Console, SetsAParameterAndTellsWhen) {
   Talk talk(test::arena("rigid", 1));

@@ -7,7 +7,7 @@
 namespace sandlot {
 namespace {
 
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+using test::has;
 
 /// A run of 2 s that executes scheduled lines, on this thread.
 struct Scripted {

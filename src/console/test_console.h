@@ -15,6 +15,10 @@
 
 namespace sandlot::test {
 
+inline bool has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
 class Talk {
  public:
   explicit Talk(model::Setup setup, Console::Options options = {}, Session::Options of_session = {})

@@ -26,10 +26,6 @@ using Is = ValueFound::Is;
 
 std::string_view thing_of(std::string_view address) { return address.substr(0, address.find('.')); }
 std::string_view robot_of(std::string_view address) { return address.substr(0, address.find_first_of("/.")); }
-std::string_view without_slash(std::string_view address) {
-  if (!address.empty() && address.front() == '/') address.remove_prefix(1);
-  return address;
-}
 
 /// A list of objects as JSON.
 class JsonRows {

@@ -13,7 +13,7 @@ struct Read {
 };
 
 /// Nothing when the element has no noise.
-Result<std::optional<Read>> read(const Node& noise, Diagnostics& diagnostics) {
+Result<std::optional<Read>> read_sdf_noise(const Node& noise, Diagnostics& diagnostics) {
   const Node* const type = find(noise, "type") ? find(noise, "type") : find(noise, "@type");
   const std::string name = text(type);
   if (name == "none" || (name.empty() && !find(noise, "stddev"))) return std::optional<Read>();
@@ -63,7 +63,7 @@ void set_nonzero(double value, const Node& noise, Node& keys, const char* key) {
 
 Result<Node> range_noise(const Node& noise, Diagnostics& diagnostics) {
   Node keys = Node::map(noise.place());
-  SL_ASSIGN(const auto read_noise, read(noise, diagnostics));
+  SL_ASSIGN(const auto read_noise, read_sdf_noise(noise, diagnostics));
   if (!read_noise) return keys;
   set_nonzero(read_noise->stddev, noise, keys, "white");
   set_nonzero(read_noise->mean, noise, keys, "mean");
@@ -76,7 +76,7 @@ Result<Node> range_noise(const Node& noise, Diagnostics& diagnostics) {
 
 Result<Node> channel_noise(const Node& noise, Diagnostics& diagnostics) {
   Node keys = Node::map(noise.place());
-  SL_ASSIGN(const auto read_noise, read(noise, diagnostics));
+  SL_ASSIGN(const auto read_noise, read_sdf_noise(noise, diagnostics));
   if (!read_noise) return keys;
   set_nonzero(read_noise->stddev, noise, keys, "white");
   set_nonzero(read_noise->mean, noise, keys, "mean");

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double leap_m = 0.1;
 
-Quat interpolated(Quat a, Quat b, double share) {
+Quat interpolated_turn(Quat a, Quat b, double share) {
   double dot = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
   const double sign = dot < 0 ? -1 : 1;
   dot *= sign;
@@ -29,7 +29,7 @@ Quat interpolated(Quat a, Quat b, double share) {
 }  // namespace
 
 Pose interpolated(const Pose& a, const Pose& b, double share) {
-  return {a.p + share * (b.p - a.p), interpolated(a.q, b.q, share)};
+  return {a.p + share * (b.p - a.p), interpolated_turn(a.q, b.q, share)};
 }
 
 TickPoses TickPoses::of(const Simulation& simulation) {

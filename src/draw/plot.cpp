@@ -17,8 +17,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_lines = 24, most_columns = 10'000;
 
 // Okabe and Ito, https://jfly.uni-koeln.de/color: blue, vermilion, green, purple, orange, sky, black.
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                   "#e69f00", "#56b4e9", "#000000"};
+constexpr const char* line_colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                        "#e69f00", "#56b4e9", "#000000"};
 struct NamedColour {
   const char* name;
   const char* code;
@@ -126,9 +126,9 @@ Result<std::vector<Line>> lines_of(const std::vector<Table>& tables, const PlotO
 }
 
 /// Range of the lines with a small margin.
-std::pair<double, double> range_of(const std::vector<Line>& lines, bool of_x,
-                                   const std::optional<std::pair<double, double>>& given,
-                                   const std::optional<std::pair<double, double>>& x_given) {
+std::pair<double, double> lines_range(const std::vector<Line>& lines, bool of_x,
+                                      const std::optional<std::pair<double, double>>& given,
+                                      const std::optional<std::pair<double, double>>& x_given) {
   if (given) return *given;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Line& line : lines)
@@ -284,8 +284,8 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
                0,
                0,
                plot_height,
-               range_of(lines, true, options.x_range, {}),
-               range_of(lines, false, options.y_range, options.x_range)};
+               lines_range(lines, true, options.x_range, {}),
+               lines_range(lines, false, options.y_range, options.x_range)};
   const Ticks x_ticks = round_ticks(frame.x.first, frame.x.second, 9);
   const Ticks y_ticks = round_ticks(frame.y.first, frame.y.second, 7);
 
@@ -326,9 +326,9 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
   }
   const auto style = [&](std::size_t i) {
     const std::string& own = lines[i].colour;
-    const char* const dash = own.empty() ? dashes[i / std::size(colours) % std::size(dashes)] : "";
+    const char* const dash = own.empty() ? dashes[i / std::size(line_colours) % std::size(dashes)] : "";
     return fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}",
-                       own.empty() ? colours[i % std::size(colours)] : own.c_str(),
+                       own.empty() ? line_colours[i % std::size(line_colours)] : own.c_str(),
                        *dash ? fmt::format(" stroke-dasharray=\"{}\"", dash) : "");
   };
   if (lines.size() > 1 || !options.labels.empty()) {

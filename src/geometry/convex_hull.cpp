@@ -24,7 +24,7 @@ struct GridPoint {
 };
 
 /// At most 2^61: each difference is at most 2^30.
-GridPoint cross(GridPoint a, GridPoint b) {
+GridPoint grid_cross(GridPoint a, GridPoint b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 double length2(GridPoint a) {
@@ -62,7 +62,7 @@ class Hull {
            static_cast<Wide>(f.normal.z) * d.z;
   }
   Index add(Index a, Index b, Index c) {
-    faces_.push_back({{a, b, c}, {}, cross(p_[b] - p_[a], p_[c] - p_[a])});
+    faces_.push_back({{a, b, c}, {}, grid_cross(p_[b] - p_[a], p_[c] - p_[a])});
     return static_cast<Index>(faces_.size() - 1);
   }
   /// Gives each point to the first of the faces that it lies in front of.
@@ -83,10 +83,10 @@ class Hull {
       if (const double l = length2(p_[i] - p_[a]); l > best) best = l, b = i;
     best = 0;
     for (Index i = 0; i < n; ++i)
-      if (const double l = length2(cross(p_[b] - p_[a], p_[i] - p_[a])); l > best) best = l, c = i;
+      if (const double l = length2(grid_cross(p_[b] - p_[a], p_[i] - p_[a])); l > best) best = l, c = i;
     const GridPoint along = p_[b] - p_[a];
     if (b == a || c == a || best <= flat * flat * length2(along)) return false;
-    const Face base{{a, b, c}, {}, cross(p_[b] - p_[a], p_[c] - p_[a])};
+    const Face base{{a, b, c}, {}, grid_cross(p_[b] - p_[a], p_[c] - p_[a])};
     Wide far = 0;
     for (Index i = 0; i < n; ++i) {
       const Wide h = height(base, i);

@@ -7,7 +7,7 @@
 #include "geometry/pose.h"
 #include "geometry/shape.h"
 
-namespace sandlot {
+namespace sandlot::geometry_test {
 namespace {
 
 // Products of a handful of numbers of size one: a few ulp.
@@ -157,4 +157,4 @@ TEST(Shape, VolumesAndBounds) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::geometry_test

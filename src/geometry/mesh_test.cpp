@@ -10,7 +10,7 @@
 #include "geometry/height_grid.h"
 #include "geometry/triangulate.h"
 
-namespace sandlot {
+namespace sandlot::mesh_test {
 namespace {
 
 // Sums of a few dozen products of numbers of size one.
@@ -339,4 +339,4 @@ TEST(HeightGrid, ItsTrianglesAreTheSurfaceThatHeightAtTells) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::mesh_test

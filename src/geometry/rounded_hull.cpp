@@ -8,22 +8,22 @@ namespace sandlot {
 namespace {
 
 /// Twice the area of a, b, c; positive when they turn to the left.
-double turn(Vec2 a, Vec2 b, Vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double turn_of(Vec2 a, Vec2 b, Vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-bool cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+bool segments_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const double abc = turn_of(a, b, c), abd = turn_of(a, b, d), cda = turn_of(c, d, a), cdb = turn_of(c, d, b);
   return ((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0));
 }
 
 double between_m(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  if (cross(a, b, c, d)) return 0;
+  if (segments_cross(a, b, c, d)) return 0;
   return std::min({distance_m(a, c, d), distance_m(b, c, d), distance_m(c, a, b), distance_m(d, a, b)});
 }
 
 bool holds(std::span<const Vec2> convex, Vec2 point) {
   if (convex.size() < 3) return false;
   for (std::size_t i = 0, j = convex.size() - 1; i < convex.size(); j = i++)
-    if (turn(convex[j], convex[i], point) < 0) return false;
+    if (turn_of(convex[j], convex[i], point) < 0) return false;
   return true;
 }
 

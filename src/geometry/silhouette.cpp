@@ -14,24 +14,24 @@ namespace {
 constexpr double upright = 1e-9;  ///< [rad] a tilt that does not count
 constexpr int facets = 32;
 
-Vec2 flat(Vec3 v) { return {v.x, v.y}; }
+Vec2 flattened(Vec3 v) { return {v.x, v.y}; }
 
 /// The rim of a disc of radius r about `centre` with unit normal `axis`, seen from above: a circle, a line or
 /// an ellipse, which its 32 tangents enclose.
 void add_rim(Vec3 centre, Vec3 axis, double r, std::vector<SilhouetteDisc>& hull) {
   const double tilt = std::sqrt(axis.x * axis.x + axis.y * axis.y);
-  if (tilt < upright) return hull.push_back({flat(centre), r});
+  if (tilt < upright) return hull.push_back({flattened(centre), r});
   const Vec2 low{axis.x / tilt, axis.y / tilt};  // the way it leans; across it the ellipse is r wide
   const double narrow = std::abs(axis.z) * r;
   if (narrow < upright * r) {
-    hull.push_back({flat(centre) + r * Vec2{-low.y, low.x}, 0});
-    hull.push_back({flat(centre) - r * Vec2{-low.y, low.x}, 0});
+    hull.push_back({flattened(centre) + r * Vec2{-low.y, low.x}, 0});
+    hull.push_back({flattened(centre) - r * Vec2{-low.y, low.x}, 0});
     return;
   }
   const double outside = 1 / math::cos(math::pi / facets);
   for (int i = 0; i < facets; ++i) {
     const auto [s, c] = math::sincos(math::tau * i / facets);
-    hull.push_back({flat(centre) + outside * (r * s * Vec2{-low.y, low.x} + narrow * c * low), 0});
+    hull.push_back({flattened(centre) + outside * (r * s * Vec2{-low.y, low.x} + narrow * c * low), 0});
   }
 }
 
@@ -120,15 +120,15 @@ Heights heights_of(const Shape& shape, const Pose& X_WC) {
 void add_silhouette(const Shape& shape, const Pose& X_WC, std::vector<SilhouetteDisc>& hull) {
   const Vec3 axis = rotate(X_WC.q, {0, 0, 1});
   if (const auto* box = std::get_if<Box>(&shape)) {
-    for (const Vec3 corner : corners_of(*box, X_WC)) hull.push_back({flat(corner), 0});
+    for (const Vec3 corner : corners_of(*box, X_WC)) hull.push_back({flattened(corner), 0});
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    hull.push_back({flat(X_WC.p), sphere->radius_m});
+    hull.push_back({flattened(X_WC.p), sphere->radius_m});
   } else if (const auto* can = std::get_if<Cylinder>(&shape)) {
     for (const double end : {-0.5, 0.5})
       add_rim(X_WC.p + end * can->length_m * axis, axis, can->radius_m, hull);
   } else if (const auto* pill = std::get_if<Capsule>(&shape)) {
     for (const double end : {-0.5, 0.5})
-      hull.push_back({flat(X_WC.p + end * pill->length_m * axis), pill->radius_m});
+      hull.push_back({flattened(X_WC.p + end * pill->length_m * axis), pill->radius_m});
   } else if (const auto* barrel = std::get_if<Barrel>(&shape)) {
     // The arc as five rings: from above it lies inside the true outline by less than 1 % of the sagitta.
     for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
@@ -137,21 +137,21 @@ void add_silhouette(const Shape& shape, const Pose& X_WC, std::vector<Silhouette
     }
   } else if (const auto* cone = std::get_if<Cone>(&shape)) {
     add_rim(X_WC.p - 0.5 * cone->length_m * axis, axis, cone->radius_m, hull);
-    hull.push_back({flat(X_WC.p + 0.5 * cone->length_m * axis), 0});
+    hull.push_back({flattened(X_WC.p + 0.5 * cone->length_m * axis), 0});
   } else if (const auto* egg = std::get_if<Ellipsoid>(&shape)) {
     const Shadow s = shadow_of(*egg, X_WC.q);
     const double tolerance = upright * (s.xx + s.yy);
     if (std::abs(s.xx - s.yy) < tolerance && std::abs(s.xy) < tolerance)
-      return hull.push_back({flat(X_WC.p), std::sqrt(s.xx)});
+      return hull.push_back({flattened(X_WC.p), std::sqrt(s.xx)});
     // The ellipse is the unit circle times the Cholesky factor; so are its tangents.
     const double a = std::sqrt(s.xx), b = s.xy / a, c = std::sqrt(std::max(s.yy - b * b, 0.0));
     const double outside = 1 / math::cos(math::pi / facets);
     for (int i = 0; i < facets; ++i) {
       const auto [sine, cosine] = math::sincos(math::tau * i / facets);
-      hull.push_back({flat(X_WC.p) + outside * Vec2{a * cosine, b * cosine + c * sine}, 0});
+      hull.push_back({flattened(X_WC.p) + outside * Vec2{a * cosine, b * cosine + c * sine}, 0});
     }
   } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-    for (const Vec3& v : mesh->mesh->vertices) hull.push_back({flat(X_WC * v), 0});
+    for (const Vec3& v : mesh->mesh->vertices) hull.push_back({flattened(X_WC * v), 0});
   }
 }
 

@@ -19,7 +19,7 @@ std::vector<SilhouetteDisc> silhouette(const Shape& shape, const Pose& X_WC) {
 }
 
 /// Largest extent of discs along a direction.
-double reach_m(const std::vector<SilhouetteDisc>& discs, Vec2 direction) {
+double silhouette_reach_m(const std::vector<SilhouetteDisc>& discs, Vec2 direction) {
   double reach = -1e9;
   for (const SilhouetteDisc& disc : discs)
     reach = std::max(reach, dot(disc.centre, direction) + disc.radius_m);
@@ -47,8 +47,8 @@ TEST(Silhouette, ALeaningDiscIsEnclosedByTangents) {
   for (int i = 0; i < 100; ++i) {
     const auto [s, c] = math::sincos(math::tau * i / 100);
     const double exact = r * std::sqrt(c * c * math::cos(a) * math::cos(a) + s * s);
-    EXPECT_GE(reach_m(discs, {c, s}), exact * (1 - 1e-12));
-    EXPECT_LE(reach_m(discs, {c, s}), exact * 1.0049);
+    EXPECT_GE(silhouette_reach_m(discs, {c, s}), exact * (1 - 1e-12));
+    EXPECT_LE(silhouette_reach_m(discs, {c, s}), exact * 1.0049);
   }
 }
 

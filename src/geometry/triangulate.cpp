@@ -13,7 +13,7 @@ using Index = std::uint32_t;
 double orient(const Point& a, const Point& b, const Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
-bool in_box(const Point& a, const Point& b, const Point& p) {
+bool box_holds(const Point& a, const Point& b, const Point& p) {
   return p[0] >= std::min(a[0], b[0]) && p[0] <= std::max(a[0], b[0]) && p[1] >= std::min(a[1], b[1]) &&
          p[1] <= std::max(a[1], b[1]);
 }
@@ -21,8 +21,8 @@ bool in_box(const Point& a, const Point& b, const Point& p) {
 bool touch(const Point& a, const Point& b, const Point& c, const Point& d) {
   const double o1 = orient(a, b, c), o2 = orient(a, b, d), o3 = orient(c, d, a), o4 = orient(c, d, b);
   if (((o1 > 0 && o2 < 0) || (o1 < 0 && o2 > 0)) && ((o3 > 0 && o4 < 0) || (o3 < 0 && o4 > 0))) return true;
-  return (o1 == 0 && in_box(a, b, c)) || (o2 == 0 && in_box(a, b, d)) || (o3 == 0 && in_box(c, d, a)) ||
-         (o4 == 0 && in_box(c, d, b));
+  return (o1 == 0 && box_holds(a, b, c)) || (o2 == 0 && box_holds(a, b, d)) ||
+         (o3 == 0 && box_holds(c, d, a)) || (o4 == 0 && box_holds(c, d, b));
 }
 
 /// A ring of corners, the inside on its left: what is left to be cut.
@@ -77,8 +77,8 @@ bool bridge(Ring& ring, const std::vector<Index>& hole, const std::vector<std::v
       const Point &a = r.at(i), &b = r.at(i + 1);
       const bool shares = a == p || a == q || b == p || b == q;
       if (!shares && touch(a, b, p, q)) return true;
-      if (shares && a != p && a != q && orient(p, q, a) == 0 && in_box(p, q, a)) return true;
-      if (shares && b != p && b != q && orient(p, q, b) == 0 && in_box(p, q, b)) return true;
+      if (shares && a != p && a != q && orient(p, q, a) == 0 && box_holds(p, q, a)) return true;
+      if (shares && b != p && b != q && orient(p, q, b) == 0 && box_holds(p, q, b)) return true;
     }
     return false;
   };

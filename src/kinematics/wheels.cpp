@@ -11,7 +11,7 @@
 namespace sandlot::kinematics {
 namespace {
 
-double dot(Direction a, Direction b) { return a.x * b.x + a.y * b.y; }
+double plane_dot(Direction a, Direction b) { return a.x * b.x + a.y * b.y; }
 
 /// One equation  d . u(p) = value,  of the unknown motion.
 struct Row {
@@ -34,7 +34,7 @@ void for_each_row(std::span<const Wheel> wheels, std::span<const double> turns,
       visit(row(w.along, w.x_m, w.y_m, rim));
       visit(row({-w.along.y, w.along.x}, w.x_m, w.y_m, 0));
     } else {
-      visit(row(w.grip, w.x_m, w.y_m, rim * dot(w.grip, w.along)));
+      visit(row(w.grip, w.x_m, w.y_m, rim * plane_dot(w.grip, w.along)));
     }
   }
   if (pivot_x_m) visit(row({0, 1}, *pivot_x_m, 0, 0));
@@ -66,8 +66,8 @@ Wheel roller_wheel(double x_m, double y_m, double radius_m, double heading_rad, 
 
 double wheel_turn(const Wheel& wheel, const PlanarMotion& motion) {
   const Direction u = motion_of_point(motion, wheel.x_m, wheel.y_m);
-  if (wheel.ordinary) return dot(wheel.along, u) / wheel.radius_m;
-  return dot(wheel.grip, u) / (wheel.radius_m * dot(wheel.grip, wheel.along));
+  if (wheel.ordinary) return plane_dot(wheel.along, u) / wheel.radius_m;
+  return plane_dot(wheel.grip, u) / (wheel.radius_m * plane_dot(wheel.grip, wheel.along));
 }
 
 void wheel_turns(std::span<const Wheel> wheels, const PlanarMotion& motion, std::span<double> turns) {
@@ -112,7 +112,7 @@ Status check(std::span<const Wheel> wheels, std::optional<double> pivot_x_m) {
     const Wheel& w = wheels[i];
     if (!(w.radius_m > 0) || !std::isfinite(w.radius_m))
       return Error{called(w, i) + " has a radius of " + short_text(w.radius_m) + " m", "give it a size"};
-    if (!w.ordinary && std::abs(dot(w.grip, w.along)) < 0.02)
+    if (!w.ordinary && std::abs(plane_dot(w.grip, w.along)) < 0.02)
       return Error{called(w, i) + " has rollers whose axes lie along the wheel's: it pushes nothing",
                    "their angle is 90 deg for an omni wheel, 45 or -45 deg for a Mecanum wheel"};
     for (std::size_t j = 0; j < i; ++j)

@@ -30,9 +30,9 @@ RosTime to_ros(Time time) {
 // |sec| < 2^31 and nanosec < 2^32: no overflow, even of a nanosec that is more than a second.
 Time from_ros(RosTime t) { return {t.sec * Time::per_s + t.nanosec}; }
 
-class Writer {
+class CdrWriter {
  public:
-  explicit Writer(std::vector<std::byte>& out) : out_(out) {
+  explicit CdrWriter(std::vector<std::byte>& out) : out_(out) {
     out_.clear();
     constexpr std::array<std::byte, header_size> little_endian{std::byte{0}, std::byte{1}};
     raw(little_endian.data(), header_size);
@@ -164,7 +164,7 @@ Error broken(const MessageField& field) {
   return {"CDR ends within '" + field.name + "', or its length is wrong"};
 }
 
-Status read(const MessageInfo& info, Source& source, void* object) {
+Status read_in(const MessageInfo& info, Source& source, void* object) {
   if (info.is_time) {
     RosTime time{};
     if (!source.number(time.sec) || !source.number(time.nanosec)) return broken(info.fields[0]);
@@ -188,7 +188,7 @@ Status read(const MessageInfo& info, Source& source, void* object) {
     }
     for (std::size_t i = 0; i < count; ++i, place += field.stride) {
       if (field.type == Wire::message) {
-        SL_TRY(read(*field.message, source, place));
+        SL_TRY(read_in(*field.message, source, place));
       } else {
         std::string_view text;
         if (!source.text(text)) return broken(field);
@@ -244,13 +244,13 @@ double as_double(const std::byte* value) {
 }  // namespace
 
 void write_cdr(const MessageInfo& info, const void* message, std::vector<std::byte>& out) {
-  Writer(out).message(info, message);
+  CdrWriter(out).message(info, message);
 }
 
 Status read_cdr(const MessageInfo& info, std::span<const std::byte> bytes, void* message) {
   Source source(bytes);
   SL_TRY(source.begin());
-  return read(info, source, message);
+  return read_in(info, source, message);
 }
 
 Status walk_cdr(const MessageInfo& info, std::span<const std::byte> bytes, CdrVisitor& visitor) {

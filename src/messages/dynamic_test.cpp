@@ -8,7 +8,7 @@
 #include "messages/registry.h"
 #include "messages/sample.h"
 
-namespace sandlot {
+namespace sandlot::dynamic_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -186,4 +186,4 @@ TEST(Dynamic, LimitsHold) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::dynamic_test

@@ -10,7 +10,7 @@
 #include "noise/depth_noise.h"
 #include "noise/deviates.h"
 
-namespace sandlot {
+namespace sandlot::image_noise_test {
 namespace {
 
 using namespace image_stage;
@@ -335,4 +335,4 @@ TEST(ImageNoise, IsReadAsAListAndBadOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::image_noise_test

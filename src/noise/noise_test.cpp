@@ -12,16 +12,16 @@
 namespace sandlot {
 namespace {
 
-Stream stream(std::uint64_t k) { return {1, 2, Purpose::noise, k}; }
+Stream noise_stream(std::uint64_t k) { return {1, 2, Purpose::noise, k}; }
 
 /// Root mean square of the error over n samples, dt apart.
 double rms(const DriftingBiasSpec& spec, double dt, int n) {
   DriftingBias channel;
-  Stream first = stream(0);
+  Stream first = noise_stream(0);
   channel.reset(spec, first);
   double sum = 0;
   for (int k = 0; k < n; ++k) {
-    Stream random = stream(static_cast<std::uint64_t>(k) + 1);
+    Stream random = noise_stream(static_cast<std::uint64_t>(k) + 1);
     const double e = channel.corrupt(spec, 0.0, dt, random);
     sum += e * e;
   }
@@ -53,7 +53,7 @@ TEST(DriftingBias, IsCorrelatedAsItsTimeConstantSays) {
   double product = 0, squares = 0, previous = 0;
   constexpr int n = 100'000;
   for (int k = 0; k < n; ++k) {
-    Stream random = stream(static_cast<std::uint64_t>(k));
+    Stream random = noise_stream(static_cast<std::uint64_t>(k));
     channel.corrupt(spec, 0.0, 1.0, random);
     product += channel.bias * previous;
     squares += channel.bias * channel.bias;
@@ -68,7 +68,7 @@ TEST(DriftingBias, TheFirstBiasIsDrawnFromTheStationarySpread) {
   double sum = 0;
   constexpr int n = 20'000;
   for (int k = 0; k < n; ++k) {
-    Stream random = stream(static_cast<std::uint64_t>(k));
+    Stream random = noise_stream(static_cast<std::uint64_t>(k));
     DriftingBias channel;
     channel.reset(spec, random);
     sum += channel.bias * channel.bias;
@@ -78,13 +78,13 @@ TEST(DriftingBias, TheFirstBiasIsDrawnFromTheStationarySpread) {
 
 TEST(DriftingBias, WithoutErrorsTheTruthComesThrough) {
   DriftingBias channel;
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   EXPECT_EQ(channel.corrupt({}, 1.25, 0.1, random), 1.25);
 }
 
 TEST(WhiteNoise, HasItsStatedMeanAndSpread) {
   const WhiteNoiseSpec spec{0.5};
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   double sum = 0, squares = 0;
   constexpr int n = 100'000;
   for (int k = 0; k < n; ++k) {
@@ -105,7 +105,7 @@ TEST(RangeNoise, BeamsShareTheBiasAndHaveTheirOwnWhiteError) {
   constexpr int samples = 2000, beams = 1000;
   for (int k = 0; k < samples; ++k) {
     std::vector<float> ranges(beams, 5.0f);
-    Stream random = stream(static_cast<std::uint64_t>(k));
+    Stream random = noise_stream(static_cast<std::uint64_t>(k));
     corrupt_ranges(spec, bias, 0.1, random, 0.0, 100.0, ranges);
     double mean = 0;
     for (const float r : ranges) mean += (r - 5.0) / beams;
@@ -125,7 +125,7 @@ TEST(RangeNoise, LeavesTheEndsAloneAndStaysBetweenThem) {
   std::vector<float> ranges(1000, 2.0f);
   ranges[0] = inf;
   ranges[1] = -inf;
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   corrupt_ranges(spec, bias, 0.1, random, 0.5, 3.0, ranges);
   EXPECT_EQ(ranges[0], inf);
   EXPECT_EQ(ranges[1], -inf);
@@ -141,7 +141,7 @@ TEST(RangeNoise, LeavesTheEndsAloneAndStaysBetweenThem) {
 TEST(RangeNoise, WithoutErrorsTheRangesStayAsTheyAre) {
   DriftingBias bias{0.7};
   std::vector<float> ranges{0.1f, 5.0f};
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   corrupt_ranges({}, bias, 0.1, random, 0.5, 3.0, ranges);
   EXPECT_EQ(ranges, (std::vector<float>{0.1f, 5.0f}));
   EXPECT_EQ(bias.bias, 0.7);
@@ -149,7 +149,7 @@ TEST(RangeNoise, WithoutErrorsTheRangesStayAsTheyAre) {
 
 TEST(RangeNoise, TheConstantErrorIsAddedAndTheSumRounded) {
   const RangeNoiseSpec spec{.mean_m = 0.3, .systematic_m = 0, .resolution_m = 0.25};
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   const double constant = constant_error_m(spec, random);
   EXPECT_EQ(constant, 0.3);
   DriftingBias bias;
@@ -164,13 +164,13 @@ TEST(ChannelNoise, ItsPartsAddUp) {
   const ChannelNoiseSpec spec{
       .white = 0.3, .mean = 0.5, .mean_std = 2, .bias = {.bias_std = 0.4, .correlation_s = 1e-3}};
   ChannelNoise channel;
-  Stream first = stream(0);
+  Stream first = noise_stream(0);
   channel.reset(spec, first);
   EXPECT_NE(channel.drawn, 0);
   double sum = 0, squares = 0;
   constexpr int n = 40'000;
   for (int k = 0; k < n; ++k) {
-    Stream random = stream(static_cast<std::uint64_t>(k) + 1);
+    Stream random = noise_stream(static_cast<std::uint64_t>(k) + 1);
     const double e = channel.corrupt(spec, 7, 0.1, random) - 7.5 - channel.drawn;
     sum += e;
     squares += e * e;
@@ -183,7 +183,7 @@ TEST(ChannelNoise, ItsPartsAddUp) {
 TEST(ChannelNoise, RoundsAndSaturates) {
   const ChannelNoiseSpec spec{.resolution = 0.5, .limit = 3};
   ChannelNoise channel;
-  Stream random = stream(0);
+  Stream random = noise_stream(0);
   EXPECT_EQ(channel.corrupt(spec, 1.2, 0.1, random), 1.0);
   EXPECT_EQ(channel.corrupt(spec, 1.3, 0.1, random), 1.5);
   EXPECT_EQ(channel.corrupt(spec, 7, 0.1, random), 3);

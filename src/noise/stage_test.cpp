@@ -10,7 +10,7 @@
 
 #include "noise/chain.h"
 
-namespace sandlot {
+namespace sandlot::stage_test {
 namespace {
 
 constexpr double bound = 4.5;
@@ -561,4 +561,4 @@ TEST(RangeStages, EchoesByALongerWayAreExponentialBehindTheWall) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::stage_test

@@ -54,9 +54,9 @@ RTCRay8 eight_rays() {
   return rays;
 }
 
-using Field = float (RTCRay8::*)[8];
-constexpr Field fields[] = {&RTCRay8::org_x, &RTCRay8::org_y, &RTCRay8::org_z, &RTCRay8::dir_x,
-                            &RTCRay8::dir_y, &RTCRay8::dir_z, &RTCRay8::tnear};
+using RayField = float (RTCRay8::*)[8];
+constexpr RayField fields[] = {&RTCRay8::org_x, &RTCRay8::org_y, &RTCRay8::org_z, &RTCRay8::dir_x,
+                               &RTCRay8::dir_y, &RTCRay8::dir_z, &RTCRay8::tnear};
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float unsound[] = {2e18f, -2e18f, inf, -inf, std::numeric_limits<float>::quiet_NaN()};
 

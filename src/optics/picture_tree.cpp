@@ -18,8 +18,8 @@ using lanes::F3;
 using lanes::I;
 using lanes::select;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float largest = std::numeric_limits<float>::max();
+constexpr float tree_infinity = std::numeric_limits<float>::infinity();
+constexpr float largest_span = std::numeric_limits<float>::max();
 /// Surfaces whose distances differ by less lie in one plane: what single precision leaves of it at grazing
 /// angles.
 constexpr float same_distance = 4e-6f;
@@ -49,7 +49,7 @@ bool is_whole(unsigned n) { return n == unsigned{lanes::width}; }
 void keep_nearest(I valid, F t, const Rays& rays, int visual, Hits& hits) {
   const F band = same_distance * hits.t;
   const I nearer = t < hits.t - band, tie = (t <= hits.t + band) & (hits.visual < visual);
-  const I take = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest) & (nearer | tie);
+  const I take = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest_span) & (nearer | tie);
   hits.t = select(take, t, hits.t);
   hits.visual = select(take, broadcast(visual), hits.visual);
 }
@@ -73,7 +73,7 @@ F plane_distance(const Visual& plane, const Rays& rays) {
   return (static_cast<float>(below) - dot(normal, rays.from)) / towards;
 }
 
-void fill(RTCRay8& ray, const Rays& rays) {
+void fill_rays(RTCRay8& ray, const Rays& rays) {
   lanes::store(ray.org_x, rays.from.x + static_cast<float>(rays.base[0]));
   lanes::store(ray.org_y, rays.from.y + static_cast<float>(rays.base[1]));
   lanes::store(ray.org_z, rays.from.z + static_cast<float>(rays.base[2]));
@@ -253,10 +253,10 @@ void PictureTree::occluded(const RTCOccludedFunctionNArguments* arguments) {
     hit = valid & visual.tree->between(spread, rays.near, rays.far, lanes_in);
   } else {
     const F t = distance_to(visual.solid, spread, rays.near);
-    hit = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest);
+    hit = valid & (t >= rays.near) & (t <= rays.far) & (t <= largest_span);
   }
   F& tfar = *field(arguments->ray, tfar_field);
-  tfar = select(hit, broadcast(-infinity), tfar);
+  tfar = select(hit, broadcast(-tree_infinity), tfar);
 }
 
 Hits PictureTree::trace(const Rays& rays, std::uint32_t ignore_body) const {
@@ -268,7 +268,7 @@ Hits PictureTree::trace(const Rays& rays, std::uint32_t ignore_body) const {
   }
   if (!fixed_.scene && !moving_.scene) return hits;
   alignas(64) RTCRayHit8 packet;
-  fill(packet.ray, rays);
+  fill_rays(packet.ray, rays);
   lanes::store(packet.ray.tfar, hits.t);
   lanes::store(packet.hit.primID, hits.visual);
   lanes::store(packet.hit.geomID, hits.triangle);
@@ -298,12 +298,12 @@ I PictureTree::shadowed(const Rays& rays, I doubtful, std::uint32_t ignore_body)
     const F height = static_cast<float>(above) + dot(normal, rays.from), climbs = dot(normal, rays.direction);
     if (!any(rays.valid & (height * climbs < 0))) continue;
     const F t = -height / climbs;
-    dark |= rays.valid & (t >= rays.near) & (t <= rays.far) & (t <= largest);
+    dark |= rays.valid & (t >= rays.near) & (t <= rays.far) & (t <= largest_span);
   }
   const I open = doubtful & ~dark;
   if (!any(open) || (!fixed_.scene && !moving_.scene)) return dark;
   alignas(64) RTCRay8 packet;
-  fill(packet, rays);
+  fill_rays(packet, rays);
   lanes::store(packet.tfar, rays.far);
   alignas(32) int valid[lanes::width];
   lanes::store(valid, open);

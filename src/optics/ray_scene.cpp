@@ -42,16 +42,16 @@ static_assert(offsetof(RTCRayHit8, ray.tfar) == 32 * tfar_field);
 // `primID` carries the body and `geomID` is 0 once something is hit: Embree passes both through untouched.
 static_assert(offsetof(RTCRayHit8, hit.primID) == 32 * body_field);
 static_assert(offsetof(RTCRayHit8, hit.geomID) == 32 * found_field);
-constexpr int nothing = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float largest = std::numeric_limits<float>::max();
+constexpr int no_geometry = static_cast<int>(RTC_INVALID_GEOMETRY_ID);
+constexpr float ray_infinity = std::numeric_limits<float>::infinity();
+constexpr float largest_range = std::numeric_limits<float>::max();
 
 /// Keeps the nearer of what each ray has and a surface of `body` at t. Of two at the same distance the
 /// smaller body index stays, so that the answer does not depend on the order of traversal.
 void keep_nearest(I valid, F t, F tnear, std::uint32_t body, F& tfar, I& bodies, I& found) {
   const I other = lanes::broadcast(static_cast<int>(body));
-  const I tie_won = (found == nothing) | (other < bodies);
-  const I take = valid & (t >= tnear) & (t <= largest) & ((t < tfar) | ((t == tfar) & tie_won));
+  const I tie_won = (found == no_geometry) | (other < bodies);
+  const I take = valid & (t >= tnear) & (t <= largest_range) & ((t < tfar) | ((t == tfar) & tie_won));
   tfar = lanes::select(take, t, tfar);
   bodies = lanes::select(take, other, bodies);
   found = lanes::select(take, lanes::broadcast(0), found);
@@ -137,7 +137,7 @@ F distance_to(const TriangleTree& tree, const Solid& solid, const double* origin
   alignas(32) int lanes_in[lanes::width];
   lanes::store(lanes_in, valid);
   return tree.distance_to(optics::to_local(solid, origin, rays), rays.near,
-                          lanes::select((far > 0) & (far < largest), F(I(far) + 1), far), lanes_in);
+                          lanes::select((far > 0) & (far < largest_range), F(I(far) + 1), far), lanes_in);
 }
 
 void Layer::intersect(const RTCIntersectFunctionNArguments* arguments) {
@@ -193,7 +193,8 @@ struct FourDirections {
 };
 
 /// Four directions in W, rotated in double precision.
-inline FourDirections rotate(const Rotation& R, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+inline FourDirections rotate_four(const Rotation& R, const Vec3& a, const Vec3& b, const Vec3& c,
+                                  const Vec3& d) {
   const D4 x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y}, z{a.z, b.z, c.z, d.z};
   return {__builtin_convertvector(R.x.x * x + R.y.x * y + R.z.x * z, F4),
           __builtin_convertvector(R.x.y * x + R.y.y * y + R.z.y * z, F4),
@@ -315,8 +316,8 @@ void RayScene::Impl::cast(const RayJob& job) const {
     alignas(32) int valid[lanes::width];
     // Lanes beyond the last ray repeat the first.
     const auto in = [&](std::size_t i) -> const Vec3& { return job.directions[first + (i < count ? i : 0)]; };
-    const FourDirections low = rotate(R, in(0), in(1), in(2), in(3)),
-                         high = rotate(R, in(4), in(5), in(6), in(7));
+    const FourDirections low = rotate_four(R, in(0), in(1), in(2), in(3)),
+                         high = rotate_four(R, in(4), in(5), in(6), in(7));
     const F dx = join(low.x, high.x), dy = join(low.y, high.y), dz = join(low.z, high.z);
     lanes::store(packet.ray.dir_x, dx);
     lanes::store(packet.ray.dir_y, dy);
@@ -324,7 +325,7 @@ void RayScene::Impl::cast(const RayJob& job) const {
     const I sound = embree::size(dx) + embree::size(dy) + embree::size(dz) <= embree::most;
     lanes::store(valid, sound & (I{0, 1, 2, 3, 4, 5, 6, 7} < static_cast<int>(begins ? count : 0)));
     F tfar = tmax;
-    I bodies = lanes::broadcast(static_cast<int>(no_body)), found = lanes::broadcast(nothing);
+    I bodies = lanes::broadcast(static_cast<int>(no_body)), found = lanes::broadcast(no_geometry);
     for (const WorldPlane& plane : planes) {
       if (plane.body == job.ignore_body && plane.body != no_body) continue;
       const Vec3 n = plane.normal_W;
@@ -336,10 +337,10 @@ void RayScene::Impl::cast(const RayJob& job) const {
     lanes::store(packet.ray.tfar, tfar);
     lanes::store(packet.hit.primID, bodies);
     lanes::store(packet.hit.geomID, found);
-    lanes::store(packet.hit.instID[0], lanes::broadcast(nothing));
+    lanes::store(packet.hit.instID[0], lanes::broadcast(no_geometry));
     for (const Layer* layer : {&fixed, &moving})
       if (layer->scene) embree::ask(valid, layer->scene, query, embree::incoherent, packet);
-    tfar = lanes::select(lanes::load<I>(packet.hit.geomID) == nothing, lanes::broadcast(infinity),
+    tfar = lanes::select(lanes::load<I>(packet.hit.geomID) == no_geometry, lanes::broadcast(ray_infinity),
                          lanes::load<F>(packet.ray.tfar));
     lanes::store(job.distance_m.data() + first, tfar, static_cast<unsigned>(count));
     if (!job.body.empty())

@@ -11,7 +11,7 @@ using lanes::F;
 using lanes::F3;
 using lanes::I;
 
-constexpr float nothing = -std::numeric_limits<float>::infinity();
+constexpr float no_height = -std::numeric_limits<float>::infinity();
 
 bool casts(const Visual& visual) { return !visual.is_plane && visual.given.cast_shadows; }
 
@@ -43,7 +43,8 @@ void ShadowGrid::make(const PictureTree& tree, Vec3 to_light) {
   }
   const std::size_t casting = reach_m_[0].size();
   side_ = static_cast<int>(std::clamp(12 * std::sqrt(static_cast<double>(casting)), 16.0, 128.0));
-  cells_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), {nothing, nothing, -1});
+  cells_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_),
+                {no_height, no_height, -1});
   if (casting == 0) return;
   for (std::size_t k = 0; k < 2; ++k) {
     // All shapes lie on the grid, but of very large ones only the middle: its cells are made for the others.

@@ -8,7 +8,7 @@
 #include "geometry/mesh.h"
 #include "optics/ray_scene.h"
 
-namespace sandlot {
+namespace sandlot::shapes_test {
 namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -253,4 +253,4 @@ TEST(RayShapes, SharedMeshesAnswerAsTheirOwnAndRaysDoNotSeeTheirPacket) {
 }
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::shapes_test

@@ -65,7 +65,7 @@ Surface8 box(const float* half, const F3& p, bool textured) {
   return s;
 }
 
-Surface8 oval(const float* r, const F3& p, bool textured) {
+Surface8 oval_surface(const float* r, const F3& p, bool textured) {
   Surface8 s;
   const F3 q{p.x / r[0], p.y / r[1], p.z / r[2]};  // on the unit sphere
   set_normal(s, normalised(F3{q.x / r[0], q.y / r[1], q.z / r[2]}));
@@ -92,9 +92,9 @@ Surface8 surface_of(const Solid& solid, const F3& p, bool textured) {
     case Solid::Type::box: return box(size, p, textured);
     case Solid::Type::sphere: {
       const float r[] = {radius, radius, radius};
-      return oval(r, p, textured);
+      return oval_surface(r, p, textured);
     }
-    case Solid::Type::ellipsoid: return oval(size, p, textured);
+    case Solid::Type::ellipsoid: return oval_surface(size, p, textured);
     case Solid::Type::cylinder:
     case Solid::Type::cone:
     case Solid::Type::barrel: {

@@ -11,7 +11,7 @@ namespace {
 using Channels = std::array<std::uint32_t, 3>;
 
 Channels split(std::uint32_t texel) { return {texel & 255, texel >> 8 & 255, texel >> 16 & 255}; }
-std::uint32_t join(Channels c) { return c[0] | c[1] << 8 | c[2] << 16; }
+std::uint32_t join_texels(Channels c) { return c[0] | c[1] << 8 | c[2] << 16; }
 
 /// Place of texel `i` of a row of (n + 1) / 2 in a row of n, in units of 1 / (2 * wide) of a texel: three
 /// weights that add up to 2 n. An even row has two texels with equal weight; an odd one shares every second
@@ -20,7 +20,7 @@ struct Footprint {
   std::uint32_t first;
   std::array<std::uint32_t, 3> weight;
 };
-Footprint footprint(std::uint32_t i, std::uint32_t n) {
+Footprint texture_footprint(std::uint32_t i, std::uint32_t n) {
   if (n == 1) return {0, {1, 0, 0}};
   if (n % 2 == 0) return {2 * i, {1, 1, 0}};
   // Texel i covers [i n, (i + 1) n) / half of the row, half = (n + 1) / 2.
@@ -35,7 +35,7 @@ Footprint footprint(std::uint32_t i, std::uint32_t n) {
 }
 
 /// While the pyramid is built: one colour all over the texel.
-constexpr std::uint32_t even = 1u << 24, plain = 1u << 24;
+constexpr std::uint32_t even = 1u << 24, plain_texture = 1u << 24;
 
 /// The level with its further column and row, and `plain` where neighbours agree.
 void append(const std::vector<std::uint32_t>& level, std::uint32_t width, std::uint32_t height,
@@ -50,7 +50,7 @@ void append(const std::vector<std::uint32_t>& level, std::uint32_t width, std::u
       for (std::uint32_t j = 0; same && j < 3; ++j)
         for (std::uint32_t i = 0; same && i < 3; ++i)
           same = at(x + width + i - 1, y + height + j - 1) == texel;
-      texels.push_back((texel & 0xffffff) | (same ? plain : 0));
+      texels.push_back((texel & 0xffffff) | (same ? plain_texture : 0));
     }
 }
 
@@ -63,7 +63,7 @@ std::shared_ptr<const Texture> Texture::make(int width, int height, std::span<co
   const auto texture = std::make_shared<Texture>();
   std::vector<std::uint32_t> fine(std::size_t{w} * h), coarse;
   for (std::size_t i = 0; i < fine.size(); ++i)
-    fine[i] = join({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}) | even;
+    fine[i] = join_texels({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}) | even;
   for (Level level{w, h, 0};;) {
     level.first = static_cast<std::uint32_t>(texture->texels_.size());
     texture->levels_.push_back(level);
@@ -72,9 +72,9 @@ std::shared_ptr<const Texture> Texture::make(int width, int height, std::span<co
     const Level next{(level.width + 1) / 2, (level.height + 1) / 2, 0};
     coarse.clear();
     for (std::uint32_t y = 0; y < next.height; ++y) {
-      const Footprint down = footprint(y, level.height);
+      const Footprint down = texture_footprint(y, level.height);
       for (std::uint32_t x = 0; x < next.width; ++x) {
-        const Footprint right = footprint(x, level.width);
+        const Footprint right = texture_footprint(x, level.width);
         std::array<std::uint64_t, 3> sum{};
         std::uint64_t weights = 0;
         std::uint32_t all = 0xffffffff, first = 0;  // of the texels below: what they have in common
@@ -93,7 +93,7 @@ std::shared_ptr<const Texture> Texture::make(int width, int height, std::span<co
         for (std::size_t k = 0; k < 3; ++k)
           mean[k] = static_cast<std::uint32_t>((sum[k] + weights / 2) / weights);
         const bool same = all == 0xffffffff && (first & even);
-        coarse.push_back(join(mean) | (same ? even : 0));
+        coarse.push_back(join_texels(mean) | (same ? even : 0));
       }
     }
     fine.swap(coarse);

@@ -3,7 +3,7 @@
 
 #include "physics/test_world.h"
 
-namespace sandlot {
+namespace sandlot::grip_contract_test {
 namespace {
 
 using namespace test;
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(Engines, GripContract,
                          [](const auto& param) { return std::string(param.param->name); });
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::grip_contract_test

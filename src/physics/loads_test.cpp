@@ -7,7 +7,7 @@
 #include "base/math.h"
 #include "physics/test_world.h"
 
-namespace sandlot {
+namespace sandlot::loads_test {
 namespace {
 
 using namespace test;
@@ -346,8 +346,8 @@ TEST_P(EngineLoads, AWatchedRunIsRestoredWithTheSameBits) {
   }
 }
 
-std::string name_of(const ::testing::TestParamInfo<const EngineKind*>& info) { return info.param->name; }
-INSTANTIATE_TEST_SUITE_P(Engines, EngineLoads, ::testing::ValuesIn(engine_kinds()), name_of);
+std::string engine_name(const ::testing::TestParamInfo<const EngineKind*>& info) { return info.param->name; }
+INSTANTIATE_TEST_SUITE_P(Engines, EngineLoads, ::testing::ValuesIn(engine_kinds()), engine_name);
 
 }  // namespace
-}  // namespace sandlot
+}  // namespace sandlot::loads_test

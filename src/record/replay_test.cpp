@@ -17,9 +17,9 @@ struct Recorded {
   std::vector<RecordedTick> ticks;
 };
 
-struct Recorder : Observer {
+struct TickRecorder : Observer {
   std::vector<RecordedTick>& ticks;
-  explicit Recorder(std::vector<RecordedTick>& out) : ticks(out) {}
+  explicit TickRecorder(std::vector<RecordedTick>& out) : ticks(out) {}
   Wants wants() const override { return {.log = true, .hash = true}; }
   void on_frame(const std::shared_ptr<const Frame>& frame) override {
     ticks.push_back({frame->tick, frame->now, frame->log, frame->hash, frame->parts, frame->part_names});
@@ -33,8 +33,9 @@ struct Requested {
 };
 
 /// Records `ticks` ticks from tick `begin` on.
-Recorded record(const model::Setup& setup, std::uint64_t begin, std::uint64_t ticks,
-                const std::vector<Requested>& requests = {}, std::optional<Time> measured = std::nullopt) {
+Recorded recorded_run(const model::Setup& setup, std::uint64_t begin, std::uint64_t ticks,
+                      const std::vector<Requested>& requests = {},
+                      std::optional<Time> measured = std::nullopt) {
   Diagnostics diagnostics;
   auto made = Simulation::create(setup, {}, diagnostics);
   EXPECT_TRUE(static_cast<bool>(made));
@@ -42,7 +43,7 @@ Recorded record(const model::Setup& setup, std::uint64_t begin, std::uint64_t ti
   for (std::uint64_t i = 0; i < begin; ++i) EXPECT_TRUE(static_cast<bool>(simulation.tick()));
   Recorded out;
   out.snapshot = simulation.snapshot();
-  Recorder recorder(out.ticks);
+  TickRecorder recorder(out.ticks);
   simulation.add_observer(&recorder);
   for (std::uint64_t i = 0; i < ticks; ++i) {
     for (const Requested& each : requests)
@@ -90,15 +91,15 @@ Recorded eventful(const char* engine, std::uint64_t begin = 33) {
   guest.name = "guest";
   guest.X_WM = {{3, 3, 0}, {}};
   const Source client{Source::Kind::robot, 4};
-  return record(setup, begin, 90,
-                {{begin + 2, twist("driven/drive", 0.3), client},
-                 {begin + 12, twist("driven/drive/ideal", 0.1), client},
-                 {begin + 12, twist("nobody/drive", 1), client},
-                 {begin + 20, SpawnRequest{guest}},
-                 {begin + 30, PoseRequest{"rover1", {{-3, 3, 0}, {}}}},
-                 {begin + 40, ParameterRequest{"guest/laser", "noise/white", Node::scalar("5 cm")}},
-                 {begin + 50, DeleteRequest{"rover2"}},
-                 {begin + 51, DeleteRequest{"rover2"}}});
+  return recorded_run(setup, begin, 90,
+                      {{begin + 2, twist("driven/drive", 0.3), client},
+                       {begin + 12, twist("driven/drive/ideal", 0.1), client},
+                       {begin + 12, twist("nobody/drive", 1), client},
+                       {begin + 20, SpawnRequest{guest}},
+                       {begin + 30, PoseRequest{"rover1", {{-3, 3, 0}, {}}}},
+                       {begin + 40, ParameterRequest{"guest/laser", "noise/white", Node::scalar("5 cm")}},
+                       {begin + 50, DeleteRequest{"rover2"}},
+                       {begin + 51, DeleteRequest{"rover2"}}});
 }
 
 TEST(Replay, BothWaysGiveEveryHashAgainOnBothEnginesAndFromTheMiddleOfAControlInterval) {
@@ -121,7 +122,7 @@ TEST(Replay, LoggedOrdersComeAfterTheRequestsOfRules) {
   config.set("set", settings);
   model::Setup setup = test::arena("planar", 2);
   setup.rules.push_back({"fail", "set", config, {}});
-  const Recorded recorded = record(setup, 0, 60, {});
+  const Recorded recorded = recorded_run(setup, 0, 60, {});
   const auto refused = [&](std::uint64_t tick, const char* kind) {
     for (const LogEntry& entry : recorded.ticks[tick - 1].log)
       if (entry.target.starts_with("rover1/drive") && request_kind(entry.kind) == std::string(kind))
@@ -136,7 +137,7 @@ TEST(Replay, LoggedOrdersComeAfterTheRequestsOfRules) {
 TEST(Replay, LengthsThatAClockMeasuredAreTakenFromTheLog) {
   model::Setup setup = test::arena("planar", 2);
   setup.clock = {model::Clock::Mode::continuous, Time::from_s(2e-3), Time::from_s(0.02)};
-  Recorded recorded = record(setup, 0, 60, {}, Time::from_s(4e-3));
+  Recorded recorded = recorded_run(setup, 0, 60, {}, Time::from_s(4e-3));
   EXPECT_EQ(recorded.ticks.back().log.front().kind, LogEntry::step);
   EXPECT_EQ(verdict(recorded), "");
   // One nanosecond more in tick 40.

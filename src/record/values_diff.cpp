@@ -54,7 +54,7 @@ Listing values_of(const Simulation& simulation, const std::string& part) {
 }
 
 /// "rover/laser.ranges" of "rover/laser.ranges[3]"; empty for an address that is not an element of a list.
-std::string_view list_of(std::string_view address) {
+std::string_view list_address(std::string_view address) {
   return address.ends_with(']') ? address.substr(0, address.rfind('[')) : std::string_view();
 }
 
@@ -79,7 +79,7 @@ ValueDifferences differing_values(const Simulation& a, const Simulation& b,
   const auto add = [&](const std::string& address, const Value* x, const Value* y) {
     if (x && y && same(x->value, y->value)) return;
     ++out.count;
-    const std::string_view list = list_of(address);
+    const std::string_view list = list_address(address);
     if (!list.empty() && list == list_before) {
       if (out.entries <= most) ++out.first.back().more;
       return;

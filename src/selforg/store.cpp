@@ -9,7 +9,7 @@
 namespace sandlot::selforg {
 namespace {
 
-constexpr StoredForm form{"SELFORG\n", 1, "controller"};
+constexpr StoredForm controller_form{"SELFORG\n", 1, "controller"};
 
 }  // namespace
 
@@ -65,11 +65,11 @@ void write_controller(ByteWriter& w, const Controller& controller) {
   write(body, static_cast<std::uint64_t>(controller.motors()));
   write(body, controller.fixed_key());
   controller.save(body);
-  write_stored(w, form, body.bytes());
+  write_stored(w, controller_form, body.bytes());
 }
 
 Status read_controller(std::span<const std::byte> bytes, Controller& controller, const std::string& from) {
-  SL_ASSIGN(const auto body, stored_body(bytes, form, from));
+  SL_ASSIGN(const auto body, stored_body(bytes, controller_form, from));
   ByteReader r(body);
   std::string kind;
   std::uint64_t sensors = 0, motors = 0, key = 0;

@@ -343,7 +343,7 @@ TEST(Attacks, OfClaimsAtTheSameMomentOneHolds) {
 }
 
 /// Robots whose programs are clients.
-model::Setup remote(double stop_s) {
+model::Setup remote_until(double stop_s) {
   model::Setup setup = arena("planar", 1, "");
   for (model::Instance& each : setup.instances)
     if (each.is_robot)
@@ -359,7 +359,7 @@ double value_of(const Simulation& simulation, const char* address) {
 }
 
 TEST(Attacks, AnswersTwiceForThePastAndForTheFutureAreRefused) {
-  Running run(remote(1));
+  Running run(remote_until(1));
   std::size_t refusals = 0;
   int steps = 0;
   std::thread client([&] {
@@ -397,7 +397,7 @@ TEST(Attacks, AnswersTwiceForThePastAndForTheFutureAreRefused) {
 
 /// Each claim would begin the deadline anew, for ever.
 TEST(Attacks, WhoClaimsAgainAndAgainDoesNotHoldUpTheRun) {
-  Running run(remote(1e6));
+  Running run(remote_until(1e6));
   std::atomic<bool> end = false;
   run.go();
   std::thread client([&] {

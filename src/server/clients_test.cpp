@@ -7,7 +7,7 @@ namespace {
 
 using sandlot::test::arena;
 
-model::Setup remote(int robots) {
+model::Setup patient_remote(int robots) {
   model::Setup setup = arena("planar", robots, "");
   for (model::Instance& each : setup.instances)
     if (each.is_robot)
@@ -39,7 +39,7 @@ json client_with(const json& message, const char* key, const json& value) {
 TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
   // Control steps at 0, 50, 100, 150 and 200 ms. The first is answered, three are not; the last one ends the run, and nobody
   // waits for its answer any more.
-  model::Setup setup = remote(1);
+  model::Setup setup = patient_remote(1);
   setup.stop = Time::from_s(0.2);
   Running run(std::move(setup));
   Viewer viewer(run.url(), "?name=page");
@@ -106,7 +106,7 @@ TEST(Clients, AClientThatMissesThreeStepsShowsThree) {
 }
 
 TEST(Clients, FiguresGoOnInAWorldThatWasReset) {
-  Running run(remote(1));
+  Running run(patient_remote(1));
   run.go();
   Viewer viewer(run.url());
   Bridge bridge(run.url());

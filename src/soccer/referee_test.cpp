@@ -58,7 +58,7 @@ TEST(SoccerSetPieces, ABallThatNobodyTakesIsInPlayAfterItsTime) {
   EXPECT_EQ(match.last().law, Law::not_taken);
 }
 
-struct Place {
+struct Placed {
   const char* what;
   SetPiece piece;
   Who who;
@@ -68,7 +68,7 @@ struct Place {
 
 TEST(SoccerSetPieces, DistancesAreHeld) {
   // A set piece of team 0 on the spot (2, 1), or where it belongs. The keeper of team 0 is the taker's team-mate, too.
-  const Place places[] = {
+  const Placed places[] = {
       {"opponent within 3 m", SetPiece::free_kick, player1, 4.8, 1, true},
       {"opponent beyond 3 m", SetPiece::free_kick, player1, 5.1, 1, false},
       {"first team-mate within 2 m", SetPiece::throw_in, mate0, 2, 5.6, false},
@@ -84,7 +84,7 @@ TEST(SoccerSetPieces, DistancesAreHeld) {
       {"field player outside of it", SetPiece::penalty, player1, 8, 5, false},
       {"attacker too near", SetPiece::penalty, mate0, 7.4, 2, true},
   };
-  for (const Place& place : places) {
+  for (const Placed& place : places) {
     Match match;
     match.step();
     match.state.piece = place.piece;

@@ -168,7 +168,7 @@ double quantile(double confidence) {
   return boost::math::quantile(boost::math::normal(), 0.5 + confidence / 2);
 }
 
-void check(std::span<const PlayedGame> games, double confidence) {
+void check_games(std::span<const PlayedGame> games, double confidence) {
   SL_CHECK(confidence > 0 && confidence < 1);
   for (const PlayedGame& game : games)
     SL_CHECK(game.a != game.b && std::isfinite(game.score_a) && std::isfinite(game.score_b));
@@ -186,7 +186,7 @@ Interval Ratings::difference(std::size_t a, std::size_t b) const {
 }
 
 Ratings rate(std::size_t players, std::span<const PlayedGame> games, double confidence) {
-  check(games, confidence);
+  check_games(games, confidence);
   for (const PlayedGame& game : games) SL_CHECK(game.a < players && game.b < players);
   Ratings out;
   out.confidence = confidence;
@@ -220,7 +220,7 @@ Ratings rate(std::size_t players, std::span<const PlayedGame> games, double conf
 }
 
 std::vector<PairScores> pair_scores(std::span<const PlayedGame> games, double confidence) {
-  check(games, confidence);
+  check_games(games, confidence);
   std::map<std::pair<std::size_t, std::size_t>, PairScores> pairs;
   for (const PlayedGame& game : games) {
     const auto [a, b] = std::minmax(game.a, game.b);

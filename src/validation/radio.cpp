@@ -153,7 +153,7 @@ Tally tally(Node keys, int packets, bool one_more = false, std::vector<std::uint
   return t;
 }
 
-void errors(Section& s) {
+void bit_errors(Section& s) {
   constexpr int packets = 2000;
   const auto rate = [&](const std::string& what, Node keys, double p) {
     const Tally t = tally(std::move(keys), packets);
@@ -278,7 +278,7 @@ Section radio() {
       {}};
   propagation(s);
   times(s);
-  errors(s);
+  bit_errors(s);
   access(s);
   return s;
 }

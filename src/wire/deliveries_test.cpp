@@ -10,7 +10,7 @@ namespace sandlot::wire {
 namespace {
 
 template <class T>
-T take(ByteReader& r) {
+T take_value(ByteReader& r) {
   T value{};
   read(r, value);
   return value;
@@ -23,17 +23,17 @@ TEST(Deliveries, OfEachPairAndMediumAreOneRecord) {
   write_deliveries(deliveries, 7, Time{70'000'000}, out);
   ASSERT_EQ(out.size(), 20u + 3 * 20);
   ByteReader r(out);
-  EXPECT_EQ(take<std::uint64_t>(r), 7u) << "tick";
-  EXPECT_EQ(take<std::int64_t>(r), 70'000'000);
-  EXPECT_EQ(take<std::uint32_t>(r), 3u);
+  EXPECT_EQ(take_value<std::uint64_t>(r), 7u) << "tick";
+  EXPECT_EQ(take_value<std::int64_t>(r), 70'000'000);
+  EXPECT_EQ(take_value<std::uint32_t>(r), 3u);
   const auto expect = [&](std::uint32_t sender, std::uint32_t receiver, std::uint16_t medium,
                           std::uint16_t count, std::int32_t channel, float strength) {
-    EXPECT_EQ(take<std::uint32_t>(r), sender);
-    EXPECT_EQ(take<std::uint32_t>(r), receiver);
-    EXPECT_EQ(take<std::uint16_t>(r), medium);
-    EXPECT_EQ(take<std::uint16_t>(r), count);
-    EXPECT_EQ(take<std::int32_t>(r), channel) << "of the latest";
-    EXPECT_EQ(take<float>(r), strength);
+    EXPECT_EQ(take_value<std::uint32_t>(r), sender);
+    EXPECT_EQ(take_value<std::uint32_t>(r), receiver);
+    EXPECT_EQ(take_value<std::uint16_t>(r), medium);
+    EXPECT_EQ(take_value<std::uint16_t>(r), count);
+    EXPECT_EQ(take_value<std::int32_t>(r), channel) << "of the latest";
+    EXPECT_EQ(take_value<float>(r), strength);
   };
   expect(7, 8, 0, 1, 0, 20);
   expect(7, 8, 1, 2, 4, -40);
@@ -57,11 +57,11 @@ TEST(Deliveries, OfTooManyPairsSomeOfAllSendersAreSent) {
   constexpr std::uint32_t count = 834;  // every third of 2500
   ASSERT_EQ(out.size(), 20u + count * 20);
   ByteReader head(std::span<const std::byte>(out).subspan(16));
-  EXPECT_EQ(take<std::uint32_t>(head), count);
+  EXPECT_EQ(take_value<std::uint32_t>(head), count);
   std::set<std::uint32_t> senders;
   for (std::uint32_t i = 0; i < count; ++i) {
     ByteReader record(std::span<const std::byte>(out).subspan(20 + 20 * i));
-    senders.insert(take<std::uint32_t>(record));
+    senders.insert(take_value<std::uint32_t>(record));
   }
   EXPECT_EQ(senders.size(), 50u);
 }

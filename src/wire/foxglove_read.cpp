@@ -103,7 +103,7 @@ class Reader {
   std::string name_;
 };
 
-Status read_value(const Reader& in, Parameter& out) {
+Status read_parameter_value(const Reader& in, Parameter& out) {
   const Json* const value = in.find("value");
   if (!value || value->is_null()) return {};
   if (value->is_boolean()) return out.value = value->get<bool>(), Status();
@@ -130,7 +130,7 @@ Result<Parameter> read_parameter(const Reader& in) {
   Parameter out;
   SL_ASSIGN(out.name, in.text("name", true));
   SL_ASSIGN(out.type, in.text("type", false));
-  SL_TRY(read_value(in, out));
+  SL_TRY(read_parameter_value(in, out));
   const auto is = [&]<class T>(const T*) { return std::holds_alternative<T>(out.value); };
   const bool none = is(static_cast<std::monostate*>(nullptr));
   const bool fits = none || out.type.empty() ||

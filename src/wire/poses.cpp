@@ -27,13 +27,13 @@ void put(Bytes& out, const auto& value) {
   const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
   out.insert(out.end(), bytes, bytes + sizeof value);
 }
-float narrow(double x) {
+float narrowed(double x) {
   constexpr double most = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(x, -most, most));
 }
 /// Appends, and returns what a viewer reads.
 double put_float(Bytes& out, double x) {
-  const float f = narrow(x);
+  const float f = narrowed(x);
   put(out, f);
   return f;
 }

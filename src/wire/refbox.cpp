@@ -110,7 +110,7 @@ bool replace_wrong_numbers(std::string& text) {
 }
 
 /// A number of a list or entry. @param where  "robots[2].pose[0]"
-Status read_number(const Json& value, const std::string& where, double& out) {
+Status read_count(const Json& value, const std::string& where, double& out) {
   constexpr double most = 1e6;
   if (value.is_null()) return Error{where + " is no finite number", "leave out what is not known"};
   if (!value.is_number()) return Error{where + " is no number"};
@@ -128,7 +128,7 @@ Status read_three(const Json& entry, const char* key, const std::string& where, 
   if (!found->is_array() || found->size() > out.size())
     return Error{at + " is no list of at most three numbers"};
   for (std::size_t i = 0; i < found->size(); ++i)
-    SL_TRY(read_number((*found)[i], at + "[" + std::to_string(i) + "]", out[i]));
+    SL_TRY(read_count((*found)[i], at + "[" + std::to_string(i) + "]", out[i]));
   return {};
 }
 
@@ -177,7 +177,7 @@ Status read_robots(const Json& document, std::vector<RobotReport>& out) {
     std::array<double, 3> target{};
     if (const auto id = entry.find("id"); id != entry.end()) {
       double number = 0;
-      SL_TRY(read_number(*id, where + ".id", number));
+      SL_TRY(read_count(*id, where + ".id", number));
       robot.id = static_cast<std::int32_t>(number);
     }
     SL_TRY(read_three(entry, "pose", where, robot.pose));
@@ -257,7 +257,7 @@ Result<Word> read_json(std::string_view text, const TeamIds& ids) {
   else if (!team.empty()) return Error{"no team has the address " + wire::shown(team)};
   if (robot != document.end()) {
     double number = 0;
-    SL_TRY(read_number(*robot, "robotID", number));
+    SL_TRY(read_count(*robot, "robotID", number));
     out.robot = static_cast<std::int32_t>(number);
   }
   SL_TRY(judge(out));
@@ -291,7 +291,7 @@ Result<WorldState> read_world_state(std::string_view text) {
   const auto age = document->find("ageMs");
   double age_ms = 0;
   if (age == document->end()) return Error{"a world state without a number 'ageMs'"};
-  SL_TRY(read_number(*age, "ageMs", age_ms));
+  SL_TRY(read_count(*age, "ageMs", age_ms));
   out.age_ms = static_cast<std::int32_t>(age_ms);
   SL_TRY(read_robots(*document, out.robots));
   SL_TRY(read_points(*document, "balls", out.balls));

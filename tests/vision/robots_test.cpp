@@ -14,13 +14,13 @@
 namespace sandlot::test {
 namespace {
 
-constexpr double degree = math::pi / 180;
+constexpr double one_degree = math::pi / 180;
 
 /// A ball, goals and two robots on a lit field with shadows; all that stands is 0.5 m from its front to its
 /// middle or as given.
-struct Field : Studio {
+struct SoccerField : Studio {
   Vec3 ball{1.8, 0.5, 0.11}, magenta{2.6, -0.7, 0}, cyan{-1.5, 1.2, 0}, blue{4.5, 0.2, 0}, yellow{-4.5, 0, 0};
-  Field() {
+  SoccerField() {
     surroundings = {{0.72f, 0.78f, 0.85f, 1}, {0.45f, 0.45f, 0.45f, 1}};
     optics::PictureLight sun;
     sun.light.X_PLight.q = quat_from_rpy(0.4, 0.35, 0);
@@ -85,12 +85,12 @@ void expect_found(const std::vector<perception::Found>& found, const perception:
 }
 
 TEST(Vision, ColoursAreFoundInADirectedPicture) {
-  Field field;
-  const optics::Lens lens = *optics::pinhole_of_fov(400, 300, 80 * degree);
-  const Pose X_BS{{0.05, 0, 0.45}, quat_from_rpy(0, 10 * degree, 0)};
+  SoccerField field;
+  const optics::Lens lens = *optics::pinhole_of_fov(400, 300, 80 * one_degree);
+  const Pose X_BS{{0.05, 0, 0.45}, quat_from_rpy(0, 10 * one_degree, 0)};
   msg::CameraInfo info;
   cameras::fill_info(info, lens, "eye");
-  perception::Finder finder(Field::spec(), *perception::CameraModel::of(info), X_BS);
+  perception::Finder finder(SoccerField::spec(), *perception::CameraModel::of(info), X_BS);
   Studio::Shot shot = field.shoot(lens, X_BS, 2);
   std::vector<perception::Found> found;
   // A pixel is 4 mrad. The ground at 1.8 m is seen at 10 degrees: 4 mrad are 4 cm along it, and the ball's
@@ -100,10 +100,10 @@ TEST(Vision, ColoursAreFoundInADirectedPicture) {
                                    {"magenta", field.magenta, 0.01, 0.1},
                                    {"blue", field.blue, 0.03, 0.25}};
   ASSERT_TRUE(finder.find(view_of(shot.rgb), found));
-  expect_found(found, Field::spec(), wanted);
+  expect_found(found, SoccerField::spec(), wanted);
   add_noise(shot.rgb, 5);
   ASSERT_TRUE(finder.find(view_of(shot.rgb), found));
-  expect_found(found, Field::spec(), wanted);
+  expect_found(found, SoccerField::spec(), wanted);
 
   // The same by what everybody writes with OpenCV: hue, a threshold, the largest outline.
   cv::Mat hsv, mask;
@@ -127,7 +127,7 @@ TEST(Vision, ColoursAreFoundInADirectedPicture) {
 }
 
 TEST(SlowVision, ColoursAreFoundAllAround) {
-  Field field;
+  SoccerField field;
   const double a = std::sqrt(233.3) * 5e-3, b = std::sqrt(1135.7) * 5e-3;
   const Pose X_BS{{0, 0, 0.7}, {}};
   const optics::Lens lens = *optics::omni_that_fills(480, 480, {.a_m = a, .b_m = b, .rim_m = 0.05});
@@ -142,10 +142,10 @@ TEST(SlowVision, ColoursAreFoundAllAround) {
                                    {"cyan", field.cyan, 0.02, 0.12},
                                    {"blue", field.blue, 0.05, 0.4},
                                    {"yellow", field.yellow, 0.05, 0.4}};
-  perception::Finder finder(Field::spec(), *perception::CameraModel::of(info), X_BS);
+  perception::Finder finder(SoccerField::spec(), *perception::CameraModel::of(info), X_BS);
   std::vector<perception::Found> found;
   ASSERT_TRUE(finder.find(view_of(shot.rgb), found));
-  expect_found(found, Field::spec(), wanted);
+  expect_found(found, SoccerField::spec(), wanted);
 
   // The same with a mirror of which nothing is known: measured by balls laid out on the ground, whose pixels
   // are counted.
@@ -180,9 +180,9 @@ TEST(SlowVision, ColoursAreFoundAllAround) {
   ASSERT_GE(laid.size(), 20u);
   const auto fitted = perception::CameraModel::fit_polynomial(480, 480, 239.5, 239.5, laid);
   ASSERT_TRUE(fitted);
-  perception::Finder by_measure(Field::spec(), *fitted, X_BS);
+  perception::Finder by_measure(SoccerField::spec(), *fitted, X_BS);
   ASSERT_TRUE(by_measure.find(view_of(shot.rgb), found));
-  expect_found(found, Field::spec(),
+  expect_found(found, SoccerField::spec(),
                {{"ball", field.ball, 0.02, 0.1},
                 {"magenta", field.magenta, 0.02, 0.2},
                 {"cyan", field.cyan, 0.02, 0.2},

@@ -12,10 +12,10 @@ constexpr std::array<const char*, 3> drives{"roller", "contact", "ideal"};
 /// The kick-off is prepared before it: robots stand.
 constexpr double begin_s = 14, end_s = 34;
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using LevelSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// Simulated time over the time that its ticks take, while the ball is in play.
-Result<double> speed_of(const ReproduceContext& context, const std::string& name, Settings settings) {
+Result<double> speed_of(const ReproduceContext& context, const std::string& name, LevelSettings settings) {
   SL_ASSIGN(const std::vector<StepTime> steps,
             context.step_times({name, "match", std::move(settings)}, end_s, std::nullopt));
   double sim_s = 0, compute_s = 0;
@@ -31,7 +31,7 @@ Result<double> speed_of(const ReproduceContext& context, const std::string& name
 /// A match whose teams have levels of their own.
 struct Mixed {
   const char *name, *cyan, *magenta;
-  Settings settings;
+  LevelSettings settings;
 };
 
 std::vector<Mixed> mixed() {

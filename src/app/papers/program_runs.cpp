@@ -54,7 +54,7 @@ Result<std::string> example_file(const std::string& name) {
   return Error{"the example '" + name + "' was not found", "install the folder 'examples' with the program"};
 }
 
-Result<RunSpec> spec_of(const ProgramRunSpec& spec) {
+Result<RunSpec> program_spec(const ProgramRunSpec& spec) {
   RunSpec out;
   SL_ASSIGN(out.file, example_file(spec.file));
   std::vector<std::string> settings;
@@ -99,7 +99,7 @@ class Trace {
 };
 
 Result<ProgramRun> run_one(const ProgramRunSpec& spec, const std::string& drawing_file) {
-  SL_ASSIGN(RunSpec run, spec_of(spec));
+  SL_ASSIGN(RunSpec run, program_spec(spec));
   run.drawing_file = drawing_file;
   ProgramRun out;
   Trace trace(spec, out);

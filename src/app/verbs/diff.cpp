@@ -106,7 +106,7 @@ Status compare_worlds(const Replay& a, const Replay& b, const DiffOptions& optio
   return {};
 }
 
-Result<Found> compare(Side& a, Side& b, const DiffOptions& options) {
+Result<Found> compare_sides(Side& a, Side& b, const DiffOptions& options) {
   Found found;
   const auto both_at = [&](std::uint64_t tick) -> Status {
     SL_ASSIGN(Replay x, world_at(a, tick, options));
@@ -181,7 +181,7 @@ int diff(const DiffOptions& options) {
   auto b = open(options.b);
   if (!b) return complain(b.error());
   catch_interrupts();
-  auto compared = compare(*a, *b, options);
+  auto compared = compare_sides(*a, *b, options);
   if (!compared) return complain(compared.error());
   const Found& found = *compared;
   if (options.json) {

@@ -17,14 +17,14 @@
 namespace sandlot::app {
 namespace {
 
-struct Finding {
+struct Complaint {
   std::string name;
   bool ok;
   std::string detail;
 };
 
 /// Test of determinism: a small pile of boxes has one hash with one and two threads, and over a restore.
-Finding repeatable(const EngineKind& engine) {
+Complaint repeatable(const EngineKind& engine) {
   auto box = std::make_shared<model::Model>();
   box->name = "box";
   box->links.push_back({.name = "link"});
@@ -69,7 +69,7 @@ Finding repeatable(const EngineKind& engine) {
 }
 
 /// Known bits of the functions that all results depend on, from the machine of the project's golden hashes.
-Finding known_bits() {
+Complaint known_bits() {
   Stream stream(1, entity_key("doctor"), Purpose::noise, 0);
   std::uint64_t h = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -88,7 +88,7 @@ Finding known_bits() {
 }  // namespace
 
 int doctor(bool json) {
-  std::vector<Finding> findings;
+  std::vector<Complaint> findings;
   findings.push_back({"version", true, std::string("sandlot ") + SANDLOT_VERSION});
   findings.push_back({"numeric profile", true, Simulation::profile()});
   findings.push_back(
@@ -107,7 +107,7 @@ int doctor(bool json) {
                               : "none for programs of scenarios: " + sandbox.error().text()});
   bool all_ok = true;
   auto list = nlohmann::ordered_json::array();
-  for (const Finding& finding : findings) {
+  for (const Complaint& finding : findings) {
     all_ok = all_ok && finding.ok;
     list.push_back({{"name", finding.name}, {"ok", finding.ok}, {"detail", finding.detail}});
     if (!json) fmt::print("{:<5} {:<20} {}\n", finding.ok ? "ok" : "BAD", finding.name, finding.detail);

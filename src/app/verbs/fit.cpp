@@ -91,8 +91,8 @@ Status read_parameter(const std::string& text, Problem& problem) {
   return {};
 }
 
-Result<model::Setup> load(const Problem& problem, const std::vector<double>& values,
-                          Diagnostics& diagnostics) {
+Result<model::Setup> load_fit(const Problem& problem, const std::vector<double>& values,
+                              Diagnostics& diagnostics) {
   std::vector<formats::Override> overrides = problem.fixed;
   for (std::size_t i = 0; i < values.size(); ++i)
     overrides.push_back({problem.addresses[i], fmt::format("{:.17g}", values[i])});
@@ -116,7 +116,7 @@ Status read_commands(Problem& problem) {
   std::vector<double> start;
   for (const FitParameter& p : problem.parameters) start.push_back(p.start);
   Diagnostics diagnostics;
-  SL_ASSIGN(const model::Setup ours, load(problem, start, diagnostics));
+  SL_ASSIGN(const model::Setup ours, load_fit(problem, start, diagnostics));
   print_warnings(diagnostics);
   const auto names = [](const model::Setup& setup) {
     std::string out;
@@ -212,7 +212,7 @@ Status read_compared(Problem& problem) {
 /// Residuals of one run, or why it could not be carried out.
 Result<std::vector<double>> trial(const Problem& problem, const std::vector<double>& values) {
   Diagnostics diagnostics;
-  SL_ASSIGN(model::Setup setup, load(problem, values, diagnostics));
+  SL_ASSIGN(model::Setup setup, load_fit(problem, values, diagnostics));
   setup.stop.reset();
   SL_ASSIGN(const auto fresh,
             Simulation::create(std::move(setup), {.run_programs = false, .paths = problem.options.paths},
@@ -277,13 +277,13 @@ Json rms(const Problem& problem, const std::vector<double>& residuals, std::size
   return problem.compared[field].scale * std::sqrt(squares / static_cast<double>(n));
 }
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
-Json as_json(const Problem& problem, const LeastSquares& fitted) {
+Json fit_json(const Problem& problem, const LeastSquares& fitted) {
   Json json{{"runs", fitted.evaluations},
             {"failed", fitted.failed},
             {"converged", fitted.converged},
-            {"condition", number(fitted.condition)}};
+            {"condition", number_or_null(fitted.condition)}};
   Json parameters = Json::array(), compared = Json::array(), notes = Json::array();
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
     const auto& p = fitted.parameters[i];
@@ -291,8 +291,8 @@ Json as_json(const Problem& problem, const LeastSquares& fitted) {
     parameters.push_back({{"parameter", address},
                           {"start", problem.parameters[i].start},
                           {"value", p.value},
-                          {"low", number(p.low)},
-                          {"high", number(p.high)}});
+                          {"low", number_or_null(p.low)},
+                          {"high", number_or_null(p.high)}});
     if (p.at_low) notes.push_back(address + " is at its lower limit and was not counted as free");
     if (p.at_high) notes.push_back(address + " is at its upper limit and was not counted as free");
     if (p.without_effect) notes.push_back(address + " changes nothing that is compared");
@@ -316,7 +316,7 @@ Json as_json(const Problem& problem, const LeastSquares& fitted) {
   return json;
 }
 
-std::string cell(const Json& x) { return x.is_null() ? "-" : fmt::format("{:.5g}", x.get<double>()); }
+std::string number_cell(const Json& x) { return x.is_null() ? "-" : fmt::format("{:.5g}", x.get<double>()); }
 
 void print(const Json& json) {
   std::size_t wide = 9;
@@ -327,13 +327,14 @@ void print(const Json& json) {
   fmt::print("{:<{}}  {:>10}  {:>10}  95 % interval\n", "parameter", wide, "start", "value");
   for (const Json& p : json["parameters"])
     fmt::print("{:<{}}  {:>10}  {:>10}  {} to {}\n", p["parameter"].get<std::string>(), wide,
-               cell(p["start"]), cell(p["value"]), cell(p["low"]), cell(p["high"]));
+               number_cell(p["start"]), number_cell(p["value"]), number_cell(p["low"]),
+               number_cell(p["high"]));
   fmt::print("\n{:<{}}  {:>10}  {:>10}  values\n", "compared", wide, "rms before", "after");
   for (const Json& c : json["compared"])
-    fmt::print("{:<{}}  {:>10}  {:>10}  {}\n", c["field"].get<std::string>(), wide, cell(c["rms_before"]),
-               cell(c["rms_after"]), c["values"].get<std::size_t>());
+    fmt::print("{:<{}}  {:>10}  {:>10}  {}\n", c["field"].get<std::string>(), wide,
+               number_cell(c["rms_before"]), number_cell(c["rms_after"]), c["values"].get<std::size_t>());
   fmt::print("\n{} runs, {} failed; condition {}\n", json["runs"].get<int>(), json["failed"].get<int>(),
-             cell(json["condition"]));
+             number_cell(json["condition"]));
   for (const Json& note : json["notes"]) fmt::print("note: {}\n", note.get<std::string>());
 }
 
@@ -367,7 +368,7 @@ int fit(const FitOptions& options) {
   Problem problem{.options = options};
   const auto fitted = search(problem);
   if (!fitted) return complain(fitted.error());
-  const Json json = as_json(problem, *fitted);
+  const Json json = fit_json(problem, *fitted);
   if (options.json) fmt::print("{}\n", json_text(json));
   else print(json);
   if (!options.out.empty()) {

@@ -10,7 +10,7 @@
 namespace sandlot::app {
 namespace {
 
-void print(const Match& match) {
+void print_match(const Match& match) {
   const MatchResult& result = match.result;
   fmt::print("{} {} : {} {}{}\n", result.names[0], result.goals[0], result.goals[1], result.names[1],
              result.winner.empty() ? "   a draw" : "");
@@ -35,7 +35,7 @@ int match(const MatchSpec& spec) {
     out["summary"] = as_json(played->summary);
     fmt::print("{}\n", json_text(out));
   } else {
-    print(*played);
+    print_match(*played);
   }
   for (const std::string& error : played->summary.errors) fmt::print(stderr, "error: {}\n", error);
   // A walk-over is a result; a run that failed for no team's fault is none.

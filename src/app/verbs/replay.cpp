@@ -66,8 +66,8 @@ ReplayOutcome go_through(record::Recording& recording, record::Replay& replay, c
   return out;
 }
 
-nlohmann::ordered_json as_json(const ReplayOutcome& out, const record::Recording& recording,
-                               const Simulation& simulation, const ReplayOptions& options) {
+nlohmann::ordered_json replay_json(const ReplayOutcome& out, const record::Recording& recording,
+                                   const Simulation& simulation, const ReplayOptions& options) {
   using Json = nlohmann::ordered_json;
   Json json{{"file", options.file},
             {"ticks", out.ticks},
@@ -113,7 +113,7 @@ int replay(const ReplayOptions& options) {
   catch_interrupts();
   const ReplayOutcome out = go_through(*recording, *replay, options);
   const Simulation& simulation = replay->simulation();
-  const auto json = as_json(out, *recording, simulation, options);
+  const auto json = replay_json(out, *recording, simulation, options);
   if (options.json) {
     fmt::print("{}\n", json_text(json));
   } else {

@@ -18,7 +18,7 @@
 namespace sandlot::app {
 namespace {
 
-Result<RunSpec> spec_of(const Condition& condition) {
+Result<RunSpec> condition_spec(const Condition& condition) {
   RunSpec spec;
   SL_ASSIGN(spec.file, demo_file(condition.scenario));
   std::vector<std::string> settings;
@@ -35,7 +35,7 @@ class Runner {
 
   Result<RepeatSummary> runs(const Condition& condition) {
     ++begun_;
-    SL_ASSIGN(RunSpec run, spec_of(condition));
+    SL_ASSIGN(RunSpec run, condition_spec(condition));
     const RepeatSpec spec{.run = std::move(run), .count = repeat_, .at_a_time = options_.at_a_time};
     const bool shows = isatty(STDERR_FILENO);
     std::atomic<int> shown = -1;
@@ -61,7 +61,7 @@ class Runner {
   }
 
   Result<std::string> drawing(const Condition& condition, double until_s) const {
-    SL_ASSIGN(RunSpec spec, spec_of(condition));
+    SL_ASSIGN(RunSpec spec, condition_spec(condition));
     spec.duration_s = until_s;
     const std::string file = (std::filesystem::path(options_.out) / "drawing.svg").string();
     spec.drawing_file = file;
@@ -75,7 +75,7 @@ class Runner {
 
   Result<std::vector<StepTime>> step_times(const Condition& condition, double duration_s,
                                            std::optional<double> rate) const {
-    SL_ASSIGN(RunSpec spec, spec_of(condition));
+    SL_ASSIGN(RunSpec spec, condition_spec(condition));
     spec.duration_s = duration_s;
     spec.rate = rate;
     spec.step_times_file = (std::filesystem::path(options_.out) / (condition.name + ".csv")).string();

@@ -10,7 +10,7 @@ namespace sandlot::assets::image {
 namespace {
 
 /// All that lives across libpng's longjmp is here, outside the function that it leaves.
-struct Job {
+struct PngJob {
   std::string_view bytes;
   const ImageLimits& limits;
   Image& out;
@@ -25,13 +25,13 @@ struct Job {
 };
 
 void on_error(png_structp png, png_const_charp message) {
-  auto* job = static_cast<Job*>(png_get_error_ptr(png));
+  auto* job = static_cast<PngJob*>(png_get_error_ptr(png));
   if (job->problem.empty()) job->problem = std::string("is damaged: ") + message;
   png_longjmp(png, 1);
 }
 void on_warning(png_structp, png_const_charp) {}
 void on_read(png_structp png, png_bytep to, png_size_t count) {
-  auto* job = static_cast<Job*>(png_get_io_ptr(png));
+  auto* job = static_cast<PngJob*>(png_get_io_ptr(png));
   if (job->bytes.size() - job->at < count) {
     job->problem = "ends too early";
     png_longjmp(png, 1);
@@ -41,7 +41,7 @@ void on_read(png_structp png, png_bytep to, png_size_t count) {
 }
 
 /// Up to the size; false when libpng gave up.
-bool read_header(Job& job) {
+bool read_png_header(PngJob& job) {
   if (setjmp(png_jmpbuf(job.png))) return false;  // NOLINT(cert-err52-cpp): libpng knows no other way
   const auto side = static_cast<png_uint_32>(job.limits.max_side);
   png_set_user_limits(job.png, side, side);
@@ -63,7 +63,7 @@ bool read_header(Job& job) {
   return true;
 }
 
-bool read_pixels(Job& job) {
+bool read_png_pixels(PngJob& job) {
   if (setjmp(png_jmpbuf(job.png))) return false;  // NOLINT(cert-err52-cpp)
   png_read_image(job.png, job.rows.data());
   png_read_end(job.png, nullptr);
@@ -82,18 +82,18 @@ std::string decode_png(std::string_view bytes, const ImageLimits& limits, Image&
   if (bytes.size() < 33) return "ends too early";
   if (std::string problem = judge_size(number_at(16), number_at(20), limits); !problem.empty())
     return problem;
-  Job job{.bytes = bytes, .limits = limits, .out = out};
+  PngJob job{.bytes = bytes, .limits = limits, .out = out};
   job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
   if (job.png) job.info = png_create_info_struct(job.png);
   if (!job.info) {
     png_destroy_read_struct(&job.png, &job.info, nullptr);
     return "cannot be read: libpng does not start";
   }
-  bool good = read_header(job);
+  bool good = read_png_header(job);
   if (good) {
     job.pixels.resize(job.row_bytes * job.height);
     for (png_uint_32 y = 0; y < job.height; ++y) job.rows.push_back(job.pixels.data() + y * job.row_bytes);
-    good = read_pixels(job);
+    good = read_png_pixels(job);
   }
   png_destroy_read_struct(&job.png, &job.info, nullptr);
   if (!good) return job.problem.empty() ? "is damaged" : job.problem;

@@ -9,7 +9,7 @@
 
 #include "assets/mesh/samples_test.h"
 
-namespace sandlot::assets {
+namespace sandlot::assets::mesh_test {
 namespace {
 
 using namespace mesh_samples;  // NOLINT(google-build-using-namespace)
@@ -504,4 +504,4 @@ TEST(CollisionMeshes, HullsOfTheWholeOrOfItsParts) {
 }
 
 }  // namespace
-}  // namespace sandlot::assets
+}  // namespace sandlot::assets::mesh_test

@@ -328,7 +328,7 @@ namespace {
 
 /// The keys, and the parameters of all kinds of agents: an agent has the values of its own kind only. Ranges of a name that
 /// several kinds have are united; the agent checks its own.
-std::vector<FieldInfo> describe() {
+std::vector<FieldInfo> describe_agent() {
   std::vector<FieldInfo> all = describe_fields<Spec>();
   const std::size_t own = all.size();
   for (const so::ControllerKind& each : so::controller_kinds())
@@ -353,7 +353,7 @@ extern const ControllerKind kind;
 constinit const ControllerKind kind = {
     .name = "selforg",
     .help = "Finds behaviour by itself: homeokinesis and its kin.",
-    .describe = describe,
+    .describe = describe_agent,
     .create = []() -> std::unique_ptr<Controller> { return std::make_unique<SelfOrg>(); },
 };
 

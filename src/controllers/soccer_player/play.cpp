@@ -124,7 +124,7 @@ Intent keep(const Scene& scene, Memory& memory, bool may_leave) {
 }
 
 /// Own set piece: the taker stands behind the ball until play may go on, comes straight, kicks once, and leaves the ball alone.
-Intent take(const Scene& scene, Memory& memory) {
+Intent take_ball(const Scene& scene, Memory& memory) {
   if (memory.aim == Aim::none || memory.aim == Aim::dribble || scene.now_s > memory.until_s)
     aim_of_piece(scene, memory);
   const Vec3 direction = normalised(memory.at - scene.ball), off = flat(scene.ball - scene.me);
@@ -169,7 +169,8 @@ Intent decide(const Scene& scene, const Task& task, Memory& memory) {
     return keep(scene, memory, may);
   }
   if (piece) {
-    if (ours && task.role == Role::attacker && game.piece != Piece::dropped_ball) return take(scene, memory);
+    if (ours && task.role == Role::attacker && game.piece != Piece::dropped_ball)
+      return take_ball(scene, memory);
     double room = ours ? 2.3 : 3.4;
     if (game.piece == Piece::dropped_ball) room = 1.4;
     Vec3 place = task.target;

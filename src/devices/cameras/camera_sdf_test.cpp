@@ -17,7 +17,7 @@ Node map_of(std::initializer_list<std::pair<const char*, const char*>> entries) 
   return node;
 }
 
-Result<Node> read(Node lens, const char* fov, Diagnostics& diagnostics) {
+Result<Node> read_lens(Node lens, const char* fov, Diagnostics& diagnostics) {
   Node camera = map_of({{"horizontal_fov", fov}});
   camera.set("image", map_of({{"width", "800"}, {"height", "600"}}));
   camera.set("lens", std::move(lens));
@@ -48,7 +48,7 @@ TEST(CameraSdf, ALensOfItsOwnFunctionKeepsItWithinAHundredthOfAPixel) {
     Node lens = map_of({{"type", "custom"}, {"scale_to_hfov", "true"}, {"cutoff_angle", "2"}});
     lens.set("custom_function",
              map_of({{"c1", "1.05"}, {"c2", "4"}, {"f", "1"}, {"fun", tangent ? "tan" : "sin"}}));
-    const auto keys = read(std::move(lens), "3.1415926", diagnostics);
+    const auto keys = read_lens(std::move(lens), "3.1415926", diagnostics);
     ASSERT_TRUE(keys) << keys.error().text();
     EXPECT_EQ(keys->find("lens")->text(), "kannala_brandt");
     EXPECT_NEAR(number_in(*keys, "horizontal_fov"), 4, 1e-12);  // up to the cutoff
@@ -63,7 +63,7 @@ TEST(CameraSdf, AnUnscaledLensHasHalfTheWidthTimesItsFunction) {
   Diagnostics diagnostics;
   Node lens = map_of({{"type", "custom"}, {"scale_to_hfov", "false"}});
   lens.set("custom_function", map_of({{"c1", "1.5"}, {"c2", "2"}, {"f", "0.8"}, {"fun", "id"}}));
-  const auto keys = read(std::move(lens), "1", diagnostics);
+  const auto keys = read_lens(std::move(lens), "1", diagnostics);
   ASSERT_TRUE(keys);
   EXPECT_NEAR(radius_px(*keys, 0.7), 400 * 1.5 * 0.8 * 0.7 / 2, 1e-6);
   EXPECT_NEAR(number_in(*keys, "horizontal_fov"), pi, 1e-12) << "SDF's cutoff is 90 degrees";
@@ -77,7 +77,7 @@ TEST(CameraSdf, NamedLensesEndAtTheirFieldOfView) {
                                                   {"equisolid_angle", 1.0},
                                                   {"orthographic", 0.866025403784439}};
   for (const auto& [name, radius] : names) {
-    const auto keys = read(map_of({{"type", name}}), "2.0943951023931953", diagnostics);
+    const auto keys = read_lens(map_of({{"type", name}}), "2.0943951023931953", diagnostics);
     ASSERT_TRUE(keys) << name;
     EXPECT_NEAR(number_in(*keys, "fx"), 400 / radius, 1e-9) << name;
     EXPECT_EQ(keys->find("distortion"), nullptr);
@@ -88,7 +88,7 @@ TEST(CameraSdf, NamedLensesEndAtTheirFieldOfView) {
 TEST(CameraSdf, WhatIsNoLensIsRefusedOrNamed) {
   Diagnostics diagnostics;
   const auto complaint = [&](Node lens, const char* fov) {
-    const auto keys = read(std::move(lens), fov, diagnostics);
+    const auto keys = read_lens(std::move(lens), fov, diagnostics);
     return keys ? std::string("fine") : keys.error().text();
   };
   EXPECT_NE(complaint(map_of({{"type", "equidistance"}}), "1").find("did you mean 'equidistant'"),

@@ -55,13 +55,13 @@ struct Solid {
 constexpr double psd_range_m = 9.999, infrared_range_m = 0.15;
 constexpr double older_height_m = 0.03;  ///< of sensors in polar coordinates, over the robot's point
 
-Vec3 point(const std::vector<double>& n, std::size_t first) {
+Vec3 point_at(const std::vector<double>& n, std::size_t first) {
   return {n[first] * mm, n[first + 1] * mm, n[first + 2] * mm};
 }
 
-class Reader {
+class RobiReader {
  public:
-  Reader(const std::string& file, const ReadOptions& options, Diagnostics& diagnostics)
+  RobiReader(const std::string& file, const ReadOptions& options, Diagnostics& diagnostics)
       : file_(file), options_(options), diagnostics_(diagnostics) {}
 
   Result<Robi> read(const std::vector<Line>& lines) {
@@ -131,7 +131,7 @@ class Reader {
     SL_ASSIGN(mass_kg_, number_at(line, 1, "a mass in kg"));
     if (!(mass_kg_ > 0)) return line.error("the mass of a robot is above 0");
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 2));
-    if (n.size() >= 3) centre_ = from_model_space(point(n, 0));
+    if (n.size() >= 3) centre_ = from_model_space(point_at(n, 0));
     return {};
   }
 
@@ -145,7 +145,7 @@ class Reader {
       return line.error("a collider " + kind + " has its size and its centre", "all in mm");
     for (std::size_t i = 0; i < sizes; ++i)
       if (!(n[i] > 0)) return line.error("the size of a collider is above 0");
-    const Pose X_RC{from_model_space(point(n, sizes)), {}};
+    const Pose X_RC{from_model_space(point_at(n, sizes)), {}};
     if (kind == "box") solids_.push_back({Box{{n[2] * mm, n[0] * mm, n[1] * mm}}, X_RC});
     else if (kind == "sphere") solids_.push_back({Sphere{n[0] * mm}, X_RC});
     // The height of Unity's capsules counts the half balls at both ends.
@@ -158,7 +158,7 @@ class Reader {
     if (line.arguments() < 1) return line.error("'model' names no file");
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 2));
     Pose X_RV;
-    if (n.size() >= 3) X_RV.p = from_model_space(point(n, 0));
+    if (n.size() >= 3) X_RV.p = from_model_space(point_at(n, 0));
     if (n.size() >= 6) X_RV.q = turned_in_model_space({n[3], n[4], n[5]});
     X_RV.q = X_RV.q * from_mesh_space;
     // A robot has a body without it, too.
@@ -242,7 +242,7 @@ class Reader {
       out.X_RS = {{n[1] * mm * math::cos(angle), n[1] * mm * math::sin(angle), older_height_m},
                   quat_from_axis_angle({0, 0, 1}, radians(n[0] + n[2]))};
     } else {
-      out.X_RS = {point(n, 0), quat_from_axis_angle({0, 0, 1}, radians(n.size() >= 6 ? n[4] : n[3]))};
+      out.X_RS = {point_at(n, 0), quat_from_axis_angle({0, 0, 1}, radians(n.size() >= 6 ? n[4] : n[3]))};
     }
     for (const Psd& other : psds_)
       if (other.name == out.name || other.number == out.number)
@@ -298,8 +298,8 @@ class Reader {
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 1));
     if (n.size() < 5) return line.error("a camera has x y z in mm, pan and tilt in degrees");
     Camera out;
-    out.X_RS = {point(n, 0), quat_from_axis_angle({0, 0, 1}, radians(n[3])) *
-                                 quat_from_axis_angle({0, 1, 0}, -radians(n[4]))};
+    out.X_RS = {point_at(n, 0), quat_from_axis_angle({0, 0, 1}, radians(n[3])) *
+                                    quat_from_axis_angle({0, 1, 0}, -radians(n[4]))};
     out.place = line.place;
     if (n.size() >= 7 && n[5] > 0 && n[6] > 0) {
       if (n[5] < 180 && n[6] < 180) {
@@ -566,7 +566,7 @@ class Reader {
 Result<Robi> read_robi(std::string_view text, const std::string& file, const ReadOptions& options,
                        Diagnostics& diagnostics) {
   SL_ASSIGN(const std::vector<Line> lines, lines_of(text, file));
-  auto robot = Reader(file, options, diagnostics).read(lines);
+  auto robot = RobiReader(file, options, diagnostics).read(lines);
   if (!robot && !robot.error().place.file)
     robot.error().place = lines.empty() ? Place{} : lines.front().place;
   return robot;

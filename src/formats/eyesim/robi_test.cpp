@@ -22,7 +22,7 @@ std::string robi_error(std::string_view text) {
   const auto robot = read_robi(text, "scout.robi", {}, diagnostics);
   return robot ? "none" : robot.error().text();
 }
-const model::DeviceDecl* device(const model::Instance& instance, std::string_view name) {
+const model::DeviceDecl* device_named(const model::Instance& instance, std::string_view name) {
   for (const model::DeviceDecl& each : instance.devices)
     if (each.name == name) return &each;
   ADD_FAILURE() << "no device " << name;
@@ -61,22 +61,22 @@ TEST(EyesimRobot, StandsOnItsWheelsWithItsDevices) {
   EXPECT_NEAR(model.links[*wheel].X_ML.p.z, 0.027, 1e-12);
   // 1800 deg/s at a radius of 27 mm; turning on the spot both wheels together, over 90 mm.
   const double top_speed = 10 * 3.14159265358979323846 * 0.027;
-  EXPECT_NEAR(key(device(scout_robot, "drive"), "max_linear_speed"), top_speed, 1e-12);
-  EXPECT_NEAR(key(device(scout_robot, "drive"), "max_angular_speed"), 2 * top_speed / 0.09, 1e-12);
-  EXPECT_EQ(key(device(scout_robot, "left_encoder"), "ticks_per_turn"), 1100);
+  EXPECT_NEAR(key(device_named(scout_robot, "drive"), "max_linear_speed"), top_speed, 1e-12);
+  EXPECT_NEAR(key(device_named(scout_robot, "drive"), "max_angular_speed"), 2 * top_speed / 0.09, 1e-12);
+  EXPECT_EQ(key(device_named(scout_robot, "left_encoder"), "ticks_per_turn"), 1100);
   // x forward, y left, z up from the robot's point.
-  const auto* const front = device(scout_robot, "PSD_FRONT");
+  const auto* const front = device_named(scout_robot, "PSD_FRONT");
   EXPECT_NEAR(front->X_LS.p.x, 0.07, 1e-12);
   EXPECT_NEAR(front->X_LS.p.z, 0.057, 1e-12);
-  const auto* const left = device(scout_robot, "PSD_LEFT");
+  const auto* const left = device_named(scout_robot, "PSD_LEFT");
   EXPECT_NEAR(left->X_LS.p.y, 0.045, 1e-12);
   EXPECT_NEAR(rotate(left->X_LS.q, {1, 0, 0}).y, 1, 1e-12);
   EXPECT_EQ(robot.psds, (std::map<int, std::string>{{1, "PSD_FRONT"}, {2, "PSD_LEFT"}}));
-  const auto* const camera = device(scout_robot, "camera");
+  const auto* const camera = device_named(scout_robot, "camera");
   EXPECT_NEAR(rotate(camera->X_LS.q, {1, 0, 0}).z, math::sin(10 * M_PI / 180), 1e-12);  // it looks up
   EXPECT_EQ(key(camera, "width"), 320);
   EXPECT_EQ(key(camera, "height"), 240);  // tan(30) / tan(23.415) is 4 / 3
-  EXPECT_EQ(key(device(scout_robot, "lidar"), "beams"), 180);
+  EXPECT_EQ(key(device_named(scout_robot, "lidar"), "beams"), 180);
 }
 
 TEST(EyesimRobot, HasItsMassAndColliderInModelSpace) {

@@ -15,9 +15,9 @@ struct Frame {
   double x_m, y_m, yaw_rad;
 };
 
-class Reader {
+class WldReader {
  public:
-  explicit Reader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  explicit WldReader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
   Status read(const Line& line) {
     const std::string word = lower(line.keyword());
@@ -131,7 +131,7 @@ class Reader {
 
 Result<Plan> read_wld(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   SL_ASSIGN(const std::vector<Line> lines, lines_of(text, file));
-  Reader reader(diagnostics);
+  WldReader reader(diagnostics);
   for (const Line& line : lines) SL_TRY(reader.read(line));
   return reader.take();
 }

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string decimal(double value) {
+std::string sim_decimal(double value) {
   const double rounded = std::floor(value * 1e6 + 0.5) / 1e6;
   return number_text(rounded == 0 ? 0 : rounded);
 }
@@ -22,9 +22,9 @@ std::string in_quotes(const std::string& text) {
 }
 std::string extension_of(const std::string& file) { return lower(fs::path(file).extension().string()); }
 
-class Writer {
+class SimWriter {
  public:
-  Writer(const Scenario& scenario, Diagnostics& diagnostics)
+  SimWriter(const Scenario& scenario, Diagnostics& diagnostics)
       : scenario_(scenario), diagnostics_(diagnostics) {}
 
   Result<std::string> write() {
@@ -36,7 +36,7 @@ class Writer {
       return Error{"a .sim file has a world of EyeSim, not '" + scenario_.world + "'",
                    "convert the world to .wld first and name that", scenario_.world_place};
     const double step_ms = scenario_.setup.step.s() * 1e3;
-    if (std::abs(step_ms - 50) > 1e-9) out += "step " + decimal(step_ms) + "\n";
+    if (std::abs(step_ms - 50) > 1e-9) out += "step " + sim_decimal(step_ms) + "\n";
     for (const RobotGroup& group : scenario_.things) add(group, false);
     for (const RobotGroup& group : scenario_.robots) add(group, true);
     out += types_ + lines_;
@@ -69,8 +69,8 @@ class Writer {
       if (types_.find(line) == std::string::npos) types_ += line;
     }
     const Pose& X = group.placement.X_WM;
-    lines_ += in_quotes(type) + " " + decimal(X.p.x * 1e3) + " " + decimal(X.p.y * 1e3) + " " +
-              decimal(yaw_of(X.q) * (180 / math::pi));
+    lines_ += in_quotes(type) + " " + sim_decimal(X.p.x * 1e3) + " " + sim_decimal(X.p.y * 1e3) + " " +
+              sim_decimal(yaw_of(X.q) * (180 / math::pi));
     if (robot) lines_ += program(group);
     lines_ += "\n";
   }
@@ -103,7 +103,7 @@ class Writer {
     const auto scaled = [&](const Node& node, double factor) {
       double value = 0;
       for (const Node& each : node.items())
-        if (parse_number(each.text(), value)) out += " " + decimal(value * factor);
+        if (parse_number(each.text(), value)) out += " " + sim_decimal(value * factor);
     };
     scaled(*centre, 1e3);
     if (color && color->items().size() == 3) scaled(*color, 255);
@@ -118,7 +118,7 @@ class Writer {
 }  // namespace
 
 Result<std::string> sim_of(const Scenario& scenario, Diagnostics& diagnostics) {
-  return Writer(scenario, diagnostics).write();
+  return SimWriter(scenario, diagnostics).write();
 }
 
 }  // namespace sandlot::formats::eyesim

@@ -26,7 +26,7 @@ std::vector<Ends> spots_of(const std::vector<Spot>& spots) {
   std::sort(out.begin(), out.end());
   return out;
 }
-Plan maze(std::string_view text) {
+Plan maze_plan(std::string_view text) {
   Diagnostics d;
   auto plan = read_maze(text, "small.maz", d);
   EXPECT_TRUE(plan) << plan.error().text();
@@ -43,7 +43,7 @@ TEST(EyesimMazeWriter, DrawsWhatWasRead) {
       "|   |_ r|x|\n"
       "|_|_____|_|\n"
       "360\n";
-  const Plan plan = maze(text);
+  const Plan plan = maze_plan(text);
   Diagnostics d;
   const auto written = maze_text(plan, d);
   ASSERT_TRUE(written) << written.error().text();
@@ -56,11 +56,11 @@ TEST(EyesimMazeWriter, KeepsWallsAndSpotsOfBothStyles) {
   for (const char* const text :
        {" _ _ _\n|  _  |\n|_|_ _\n", " _____\n|  _  |\n|_|___\n100\n", "   _\n  |_|\n"}) {
     SCOPED_TRACE(text);
-    const Plan plan = maze(text);
+    const Plan plan = maze_plan(text);
     Diagnostics d;
     const auto written = maze_text(plan, d);
     ASSERT_TRUE(written) << written.error().text();
-    const Plan again = maze(*written);
+    const Plan again = maze_plan(*written);
     EXPECT_EQ(walls_of(again), walls_of(plan));
     EXPECT_EQ(spots_of(again.starts), spots_of(plan.starts));
   }
@@ -77,7 +77,7 @@ TEST(EyesimMazeWriter, RefusesWallsThatLieOnNoGrid) {
   EXPECT_EQ(maze_text({}, d).error().what, "there is no wall that a maze could have");
 }
 
-Robi robi(std::string_view text, Diagnostics& d) {
+Robi read_back(std::string_view text, Diagnostics& d) {
   auto robot = read_robi(text, "scout.robi", {}, d);
   EXPECT_TRUE(robot) << robot.error().text();
   return robot ? *robot : Robi{};
@@ -116,11 +116,11 @@ TEST(EyesimRobotWriter, WhatWasReadIsTheSameRobot) {
         "camera 0 0 60 0 0 60 45\nfisheye 120\n"}) {
     SCOPED_TRACE(text);
     Diagnostics d;
-    const Robi one = robi(text, d);
+    const Robi one = read_back(text, d);
     const auto written = robi_of(one.instance, d);
     ASSERT_TRUE(written) << written.error().text();
     EXPECT_TRUE(d.warnings.empty()) << d.warnings.front().text();
-    const Robi two = robi(*written, d);
+    const Robi two = read_back(*written, d);
     expect_same(*one.instance.model, *two.instance.model);
     ASSERT_EQ(one.instance.devices.size(), two.instance.devices.size());
     for (std::size_t i = 0; i < one.instance.devices.size(); ++i) {
@@ -153,7 +153,7 @@ TEST(EyesimRobotWriter, RefusesWhatHasNoWheels) {
 
 TEST(EyesimRobot, OfTheOlderFormHasPolarSensorsAndSpeeds) {
   Diagnostics d;
-  const Robi robot = robi(
+  const Robi robot = read_back(
       "drive DIFFERENTIAL_DRIVE\ndiameter 200\nspeed 50\nturn 180\nwheel 60 1000 500 150\n"
       "psd PSD_LEFT -205 90 80 0\nir IR_BACK 3 180 90 -10\nbump BUMP -500 -180 180\nerror psd 25\nerror "
       "omega 90\n",

@@ -8,7 +8,7 @@ namespace sandlot::formats::eyesim {
 namespace {
 
 /// To a micrometre: decimals that were typed come back as they were.
-std::string in_mm(double m) { return number_text(std::floor(m * 1e6 + 0.5) / 1e3); }
+std::string wld_mm(double m) { return number_text(std::floor(m * 1e6 + 0.5) / 1e3); }
 std::string in_255(float share) { return number_text(std::floor(static_cast<double>(share) * 255 + 0.5)); }
 
 bool is_upright(Quat q) { return std::abs(q.x) < 1e-9 && std::abs(q.y) < 1e-9; }
@@ -33,7 +33,7 @@ Wall wall_of(const Box& box, const Pose& X_WC, Color color) {
 std::string wall_line(const Wall& wall) {
   std::string out;
   for (const double each : {wall.x1_m, wall.y1_m, wall.x2_m, wall.y2_m, wall.thickness_m, wall.height_m})
-    out += in_mm(each) + " ";
+    out += wld_mm(each) + " ";
   return out + in_255(wall.color.r) + " " + in_255(wall.color.g) + " " + in_255(wall.color.b) + "\n";
 }
 
@@ -55,7 +55,7 @@ void leave_out(const model::Instance& instance, const char* why, Diagnostics& di
       {"'" + instance.name + "' is left out: a world of EyeSim has no " + why, "", instance.place});
 }
 
-struct Writer {
+struct WldWriter {
   Diagnostics& diagnostics;
   std::string floor, walls;
 
@@ -68,7 +68,7 @@ struct Writer {
       if (has_ground(link))
         for (const model::Visual& each : link.visuals)
           if (const Box* const box = std::get_if<Box>(&each.shape))
-            floor = "floor " + in_mm(box->size_m.x) + " " + in_mm(box->size_m.y) + "\n";
+            floor = "floor " + wld_mm(box->size_m.x) + " " + wld_mm(box->size_m.y) + "\n";
   }
 };
 
@@ -89,7 +89,7 @@ void walls_of_instance(const model::Instance& instance, std::vector<Wall>& out, 
 }
 
 Result<std::string> wld_of(const model::Setup& setup, Diagnostics& diagnostics) {
-  Writer writer{diagnostics, {}, {}};
+  WldWriter writer{diagnostics, {}, {}};
   for (const model::Instance& instance : setup.instances) writer.add(instance);
   if (writer.walls.empty() && writer.floor.empty())
     return Error{"there is neither a wall nor a floor that a .wld file could hold"};

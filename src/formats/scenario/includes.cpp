@@ -6,7 +6,7 @@
 namespace sandlot::formats {
 namespace {
 
-constexpr std::size_t max_depth = 16;
+constexpr std::size_t most_nested = 16;
 constexpr int max_files = 100;
 
 struct Including {
@@ -24,7 +24,7 @@ Result<Node> Including::include(const Node& name, const std::string& folder) {
   const std::string canonical = canonical_path(path);
   for (const std::string& outer : open)
     if (outer == canonical) return name.error("'" + name.text() + "' includes itself", "", "/include");
-  if (open.size() >= max_depth) return name.error("files are included more than 16 deep", "", "/include");
+  if (open.size() >= most_nested) return name.error("files are included more than 16 deep", "", "/include");
   if (++files > max_files) return name.error("more than 100 files are included", "", "/include");
   auto text = read_text_file(path, TextLimits{}.max_bytes);
   if (!text)

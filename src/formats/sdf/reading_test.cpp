@@ -7,7 +7,7 @@
 #include "base/math.h"
 #include "formats/sdf/sdf.h"
 
-namespace sandlot::formats {
+namespace sandlot::formats::reading_test {
 namespace {
 
 struct Read {
@@ -380,4 +380,4 @@ TEST(SdfVersions, OldOnesAreRewritten) {
 }
 
 }  // namespace
-}  // namespace sandlot::formats
+}  // namespace sandlot::formats::reading_test

@@ -8,7 +8,7 @@
 namespace sandlot::formats {
 namespace {
 
-Result<WorldContent> parse(const std::string& text, Diagnostics& diagnostics) {
+Result<WorldContent> parse_rollers(const std::string& text, Diagnostics& diagnostics) {
   return parse_sdf(text, "f.sdf", diagnostics, {});
 }
 constexpr const char* inertial =
@@ -30,7 +30,7 @@ constexpr const char* good =
 
 TEST(SdfRollers, AreReadAndWrittenWithoutDoublingThem) {
   Diagnostics diagnostics;
-  const auto content = parse(robot(good), diagnostics);
+  const auto content = parse_rollers(robot(good), diagnostics);
   ASSERT_TRUE(content) << content.error().text();
   EXPECT_TRUE(diagnostics.warnings.empty()) << diagnostics.warnings.front().text();
   const model::Model& m = *content->instances.at(0).model;
@@ -48,7 +48,7 @@ TEST(SdfRollers, AreReadAndWrittenWithoutDoublingThem) {
   ASSERT_TRUE(xml);
   const std::string text = xml_text(*xml, "");
   EXPECT_EQ(text.find("wheel_roller_0"), std::string::npos);
-  const auto again = parse(text, diagnostics);
+  const auto again = parse_rollers(text, diagnostics);
   ASSERT_TRUE(again) << again.error().text() << text;
   const model::Model& n = *again->instances.at(0).model;
   ASSERT_EQ(n.links.size(), m.links.size());
@@ -60,7 +60,7 @@ TEST(SdfRollers, AreReadAndWrittenWithoutDoublingThem) {
 TEST(SdfRollers, FaultsNameTheirLine) {
   const auto error = [](const std::string& rollers) {
     Diagnostics diagnostics;
-    const auto content = parse(robot(rollers), diagnostics);
+    const auto content = parse_rollers(robot(rollers), diagnostics);
     return content ? std::string("none") : content.error().text();
   };
   const auto changed = [](std::string from, std::string to) {
@@ -84,7 +84,7 @@ TEST(SdfRollers, FaultsNameTheirLine) {
   Diagnostics diagnostics;
   std::string barrel = robot("");
   barrel.replace(barrel.find("<profile>0.1"), 12, "<profile>0.005");
-  const auto wrong = parse(barrel, diagnostics);
+  const auto wrong = parse_rollers(barrel, diagnostics);
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().text().find("no such arc"), std::string::npos) << wrong.error().text();
 }

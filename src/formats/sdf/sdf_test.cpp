@@ -11,7 +11,7 @@
 
 #include "base/math.h"
 
-namespace sandlot::formats {
+namespace sandlot::formats::sdf_test {
 namespace {
 
 struct Read {
@@ -515,4 +515,4 @@ TEST(Sdf, AgreesWithLibsdformat) {
 #endif
 
 }  // namespace
-}  // namespace sandlot::formats
+}  // namespace sandlot::formats::sdf_test

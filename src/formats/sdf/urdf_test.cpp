@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "formats/sdf/sdf.h"
 
-namespace sandlot::formats {
+namespace sandlot::formats::urdf_test {
 namespace {
 
 struct Read {
@@ -355,4 +355,4 @@ TEST(Urdf, AgreesWithLibsdformatOnWhereLinksAre) {
 #endif
 
 }  // namespace
-}  // namespace sandlot::formats
+}  // namespace sandlot::formats::urdf_test

@@ -12,14 +12,14 @@ std::span<const Edge> edges_of(ConvexOutline f) {
   return f.edges.subspan(f.outline.first_edge, f.outline.edge_count);
 }
 
-struct ContactFace {
+struct Face {
   double gap_m = -infinity;
   std::uint32_t edge = 0;
 };
 
 /// The edge of `a` that keeps `b` farthest off.
-ContactFace face_between(std::span<const Edge> a, std::span<const Edge> b, Vec2 shift_b) {
-  ContactFace best;
+Face face_between(std::span<const Edge> a, std::span<const Edge> b, Vec2 shift_b) {
+  Face best;
   for (std::uint32_t i = 0; i < a.size(); ++i) {
     const Vec2 out = a[i].outward();
     double least = infinity;
@@ -58,9 +58,9 @@ bool meet_circle(ConvexOutline polygon, const Outline& circle, double sign, doub
 
 bool meet_polygons(ConvexOutline a, ConvexOutline b, double margin_m, Manifold& out) {
   const auto edges_a = edges_of(a), edges_b = edges_of(b);
-  const ContactFace of_a = face_between(edges_a, edges_b, {});
+  const Face of_a = face_between(edges_a, edges_b, {});
   if (!(of_a.gap_m < margin_m)) return false;
-  const ContactFace of_b = face_between(edges_b, edges_a, {});
+  const Face of_b = face_between(edges_b, edges_a, {});
   if (!(of_b.gap_m < margin_m)) return false;
   // Rounding shall not change the face from step to step.
   const bool swapped = of_b.gap_m > of_a.gap_m + 1e-6;
@@ -116,8 +116,8 @@ Axis separation(ConvexOutline a, ConvexOutline b, Vec2 shift) {
     return {near.distance_m - a.outline.radius_m, -1.0 * near.normal};
   }
   const auto edges_a = edges_of(a), edges_b = edges_of(b);
-  const ContactFace of_a = face_between(edges_a, edges_b, shift),
-                    of_b = face_between(edges_b, edges_a, -1.0 * shift);
+  const Face of_a = face_between(edges_a, edges_b, shift),
+             of_b = face_between(edges_b, edges_a, -1.0 * shift);
   if (of_a.gap_m >= of_b.gap_m) return {of_a.gap_m, edges_a[of_a.edge].outward()};
   return {of_b.gap_m, -1.0 * edges_b[of_b.edge].outward()};
 }

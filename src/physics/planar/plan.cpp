@@ -13,11 +13,11 @@ namespace {
 using kinematics::KinematicTree;
 using model::JointType;
 using Branch = KinematicTree::Branch;
-constexpr std::uint32_t none = KinematicTree::none;
+constexpr std::uint32_t no_link = KinematicTree::none;
 /// Shapes that reach this near to the lowest point stand on the ground.
 constexpr double ground_tolerance_m = 5e-4;
 
-Vec2 flat(Vec3 v) { return {v.x, v.y}; }
+Vec2 flat_on_plane(Vec3 v) { return {v.x, v.y}; }
 double length(Vec2 v) { return std::sqrt(dot(v, v)); }
 double cross_of(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 
@@ -86,12 +86,12 @@ struct Builder {
     int wheels = 0;
     for (std::size_t k = b; k < tree.branches.size(); ++k) {
       const Branch& each = tree.branches[k];
-      if (k != b && (each.parent == none || !beyond[each.parent])) continue;
+      if (k != b && (each.parent == no_link || !beyond[each.parent])) continue;
       beyond[each.link] = true;
       wheel[each.link] = k != b && wheel[each.parent];
       if (wheel[each.link]) continue;
       const model::Surface* surface = nullptr;
-      if (k != b && each.joint != none && turns(model.joints[each.joint]) && each.outwards &&
+      if (k != b && each.joint != no_link && turns(model.joints[each.joint]) && each.outwards &&
           tyre(model.joints[each.joint], surface) > 0) {
         wheel[each.link] = true;
         ++wheels;
@@ -113,12 +113,12 @@ struct Builder {
     for (std::size_t b = 1; b < tree.branches.size(); ++b) {
       const Branch& branch = tree.branches[b];
       std::uint32_t& group = plan.group_of_link[branch.link];
-      group = branch.parent == none ? 0 : plan.group_of_link[branch.parent];
-      if (branch.parent != none) {
+      group = branch.parent == no_link ? 0 : plan.group_of_link[branch.parent];
+      if (branch.parent != no_link) {
         steering[branch.link] = steering[branch.parent];
         below_wheel[branch.link] = below_wheel[branch.parent];
       }
-      if (branch.joint == none) continue;
+      if (branch.joint == no_link) continue;
       const model::Joint& j = model.joints[branch.joint];
       if (below_wheel[branch.link] || j.mimic) continue;
       const Vec3 axis = axis_H(j);
@@ -139,12 +139,12 @@ struct Builder {
         if (branch.outwards && carries_a_wheel(b)) {
           steering[branch.link] = branch.joint;
           plan.constraints.push_back(
-              {JointPlan::Kind::steering, branch.joint, group, group, flat(origin_H(j)), {}, up, 0});
+              {JointPlan::Kind::steering, branch.joint, group, group, flat_on_plane(origin_H(j)), {}, up, 0});
           continue;
         }
         part(b, JointPlan::Kind::pivot, group, {}, sign * up);
       } else if (j.type == JointType::prismatic && std::abs(axis.z) < 0.05) {
-        const Vec2 a = flat(axis);
+        const Vec2 a = flat_on_plane(axis);
         part(b, JointPlan::Kind::slider, group, (sign / length(a)) * a, 1);
       }
     }
@@ -154,7 +154,8 @@ struct Builder {
     if (plan.groups.size() >= 255) return;
     const auto child = static_cast<std::uint32_t>(plan.groups.size());
     plan.constraints.push_back({kind, tree.branches[b].joint, group, child,
-                                flat(origin_H(model.joints[tree.branches[b].joint])), axis, sign, 0});
+                                flat_on_plane(origin_H(model.joints[tree.branches[b].joint])), axis, sign,
+                                0});
     plan.groups.emplace_back().root = tree.branches[b].link;
     group = child;
   }
@@ -164,8 +165,8 @@ struct Builder {
     const model::Joint& j = model.joints[joint];
     WheelPlan wheel{.joint = joint, .group = group, .steering = steering};
     const Vec3 axis = axis_H(j);
-    wheel.axle = (1 / length(flat(axis))) * flat(axis);
-    wheel.at = flat(origin_H(j));
+    wheel.axle = (1 / length(flat_on_plane(axis))) * flat_on_plane(axis);
+    wheel.at = flat_on_plane(origin_H(j));
     wheel.radius_m = radius;
     wheel.surface = surface;
     const model::Link& link = model.links[j.child];
@@ -191,7 +192,7 @@ struct Builder {
       RigidGroupPlan& group = plan.groups[plan.group_of_link[l]];
       const model::Inertial& i = model.links[l].inertial;
       const double before = group.mass_kg;
-      const Vec2 com = flat(plan.X_HL[l] * i.X_LCo.p);
+      const Vec2 com = flat_on_plane(plan.X_HL[l] * i.X_LCo.p);
       const double own = inertia_about(i, rotate_inverse(plan.X_HL[l].q, {0, 0, 1}));
       if (!(i.mass_kg > 0)) continue;
       group.mass_kg += i.mass_kg;
@@ -200,19 +201,19 @@ struct Builder {
       group.com_H = group.com_H + (i.mass_kg / group.mass_kg) * apart;
     }
     for (RigidGroupPlan& group : plan.groups) {
-      if (!(group.mass_kg > 0)) group.mass_kg = 1e-9, group.com_H = flat(plan.X_HL[group.root].p);
+      if (!(group.mass_kg > 0)) group.mass_kg = 1e-9, group.com_H = flat_on_plane(plan.X_HL[group.root].p);
       if (!(group.inertia_kgm2 > 1e-12 * group.mass_kg)) group.inertia_kgm2 = 1e-12 * group.mass_kg;
     }
     for (JointPlan& constraint : plan.constraints) {
       if (constraint.kind != JointPlan::Kind::steering) continue;
       for (std::size_t b = 1; b < tree.branches.size(); ++b) {
         bool beyond = false;
-        for (std::size_t at = b; tree.branches[at].parent != none && !beyond;
+        for (std::size_t at = b; tree.branches[at].parent != no_link && !beyond;
              at = tree.branch_of[tree.branches[at].parent])
           beyond = tree.branches[at].joint == constraint.joint;
         if (!beyond) continue;
         const model::Inertial& i = model.links[tree.branches[b].link].inertial;
-        const Vec2 arm = flat(plan.X_HL[tree.branches[b].link] * i.X_LCo.p) - constraint.at_H;
+        const Vec2 arm = flat_on_plane(plan.X_HL[tree.branches[b].link] * i.X_LCo.p) - constraint.at_H;
         constraint.inertia_kgm2 += inertia_about(
                                        i, rotate_inverse(plan.X_HL[tree.branches[b].link].q, {0, 0, 1})) +
                                    i.mass_kg * dot(arm, arm);
@@ -366,13 +367,13 @@ struct Builder {
   }
 
   static void merge(RigidGroupPlan& group) {
-    std::uint32_t widest = none;
+    std::uint32_t widest = no_link;
     for (std::uint32_t i = 0; i < group.parts.size(); ++i) {
       const Outline& o = group.parts[i].outline;
-      if (o.edge_count == 0 && (widest == none || o.radius_m > group.parts[widest].outline.radius_m))
+      if (o.edge_count == 0 && (widest == no_link || o.radius_m > group.parts[widest].outline.radius_m))
         widest = i;
     }
-    if (widest == none) return;
+    if (widest == no_link) return;
     Part main = group.parts[widest];
     const Heights own = main.outline.heights;
     const double thick = own.max_m - own.min_m;

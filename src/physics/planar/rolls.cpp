@@ -7,7 +7,7 @@
 namespace sandlot::planar {
 namespace {
 
-bool same(const RollTarget& a, const RollTarget& b) {
+bool same_target(const RollTarget& a, const RollTarget& b) {
   return a.base == b.base && a.per_vx == b.per_vx && a.per_vy == b.per_vy && a.per_wz == b.per_wz;
 }
 
@@ -19,7 +19,7 @@ void PlanarEngine::set_rolls(std::span<const RollTarget> targets) {
     Motor& motor = motors_[t.wheel.index];
     SL_CHECK_MSG(t.wheel.generation == motor.generation, "no such joint");
     // Drives repeat themselves.
-    if (motor.roll != none && same(rolls_[motor.roll].target, t)) continue;
+    if (motor.roll != none && same_target(rolls_[motor.roll].target, t)) continue;
     if (!drives_[motor.slot].active || motor.role == Motor::Role::constraint) continue;
     if (motor.roll != none) show(rolls_[motor.roll]);
     motor.target = {};

@@ -5,7 +5,7 @@
 
 #include "physics/planar/test_world.h"
 
-namespace sandlot::planar {
+namespace sandlot::planar::wheels_test {
 namespace {
 
 using namespace test;
@@ -285,4 +285,4 @@ TEST(PlanarWheel, TheStateOfARobotThatFellFitsANewEngineWhereItStands) {
 }
 
 }  // namespace
-}  // namespace sandlot::planar
+}  // namespace sandlot::planar::wheels_test

@@ -5,7 +5,7 @@
 #include "physics/rigid/rigid_engine.h"
 #include "physics/test_world.h"
 
-namespace sandlot::rigid {
+namespace sandlot::rigid::guided_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ INSTANTIATE_TEST_SUITE_P(Order, Platform, ::testing::Values(false, true),
                          [](const auto& suite) { return suite.param ? "platform_first" : "box_first"; });
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot::rigid::guided_test

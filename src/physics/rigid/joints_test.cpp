@@ -9,7 +9,7 @@
 #include "physics/rigid/rigid_engine.h"
 #include "physics/test_world.h"
 
-namespace sandlot::rigid {
+namespace sandlot::rigid::joints_test {
 namespace {
 
 using namespace test;
@@ -477,4 +477,4 @@ TEST(JointTarget, OneThatIsNotFiniteEndsTheRunBeforeTheLibraryMeetsIt) {
 }
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot::rigid::joints_test

@@ -9,7 +9,7 @@
 #include "physics/rigid/rigid_engine.h"
 #include "physics/test_world.h"
 
-namespace sandlot::rigid {
+namespace sandlot::rigid::linkage_test {
 namespace {
 
 using namespace test;
@@ -308,4 +308,4 @@ TEST(Linkage, AScrewAndLooseWheelsComeDownOnTheGround) {
 }
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot::rigid::linkage_test

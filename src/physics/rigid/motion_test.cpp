@@ -212,15 +212,15 @@ TEST(RigidMotion, APushThroughAnotherBodyMeetsTheSameThreshold) {
   }
 }
 
-struct Roller {
+struct RollingBody {
   Shape shape;
   double inertia_factor;  ///< I / (m r^2)
 };
 struct Rolling : ::testing::TestWithParam<int> {};
 
 TEST_P(Rolling, ABallAndACylinderRollDownASlope) {
-  const Roller rollers[] = {{Sphere{0.1}, 0.4}, {Cylinder{0.1, 0.2}, 0.5}, {Capsule{0.1, 0.2}, 0}};
-  const Roller& roller = rollers[GetParam()];
+  const RollingBody rollers[] = {{Sphere{0.1}, 0.4}, {Cylinder{0.1, 0.2}, 0.5}, {Capsule{0.1, 0.2}, 0}};
+  const RollingBody& roller = rollers[GetParam()];
   const double angle = 0.2, mass = 2, h = 0.002;
   for (const double direction : {0.0, 0.7}) {
     Rigid world({}, slope(angle, direction));

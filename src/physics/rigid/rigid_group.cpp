@@ -49,7 +49,7 @@ bool is_positive_definite(const Symmetric3& m) {
 
 namespace {
 
-Symmetric3 tensor(const model::Inertial& i) {
+Symmetric3 group_tensor(const model::Inertial& i) {
   return {i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z};
 }
 
@@ -72,11 +72,11 @@ void add_masses(const model::Model& model, RigidGroup& group) {
   const Pose X_BM = inverse(group.X_MB);
   for (const std::uint32_t l : group.links) {
     const Pose X_BCo = X_BM * model.links[l].X_ML * model.links[l].inertial.X_LCo;
-    group.inertia_B += rotated(normalised(X_BCo.q), tensor(model.links[l].inertial));
+    group.inertia_B += rotated(normalised(X_BCo.q), group_tensor(model.links[l].inertial));
     group.inertia_B += steiner(model.links[l].inertial.mass_kg, X_BCo.p);
   }
   if (group.links.size() == 1)  // exactly as in the file, without the rounding of the sums
-    group.inertia_B = rotated(normalised(first.inertial.X_LCo.q), tensor(first.inertial));
+    group.inertia_B = rotated(normalised(first.inertial.X_LCo.q), group_tensor(first.inertial));
   if (group.gravity_mass_kg > 0) group.gravity_point_B = X_BM * (gravity_moment_M / group.gravity_mass_kg);
 }
 

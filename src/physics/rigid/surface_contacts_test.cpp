@@ -12,7 +12,7 @@
 #include "physics/substance.h"
 #include "physics/test_world.h"
 
-namespace sandlot::rigid {
+namespace sandlot::rigid::surface_contacts_test {
 namespace {
 
 using namespace test;
@@ -372,4 +372,4 @@ TEST(Matter, ABodyThatExplodesEndsTheRunWithTheStateOfBefore) {
 }
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot::rigid::surface_contacts_test

@@ -10,7 +10,7 @@
 #include "physics/rigid/rigid_engine.h"
 #include "physics/test_world.h"
 
-namespace sandlot::rigid {
+namespace sandlot::rigid::triangles_test {
 namespace {
 
 using namespace test;
@@ -274,4 +274,4 @@ TEST(Restore, WorldsOfTrianglesContinueWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace sandlot::rigid
+}  // namespace sandlot::rigid::triangles_test

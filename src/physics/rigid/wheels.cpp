@@ -10,14 +10,14 @@ namespace {
 constexpr double wake_beyond = 10 * math::pi / 180, freeze_beyond = 15 * math::pi / 180;
 constexpr double thicker = 1.02;
 
-Symmetric3 tensor(const model::Inertial& i) {
+Symmetric3 wheel_tensor(const model::Inertial& i) {
   return {i.moments.x, i.moments.y, i.moments.z, i.products.x, i.products.y, i.products.z};
 }
 
 /// Moment of inertia of a link about its joint's axis.
 double spin_inertia(const model::Link& link, const model::Joint& joint) {
   const Vec3 axis = rotate_inverse(link.inertial.X_LCo.q, rotate(joint.X_CJ.q, joint.axis_J));
-  return dot(axis, tensor(link.inertial) * axis);
+  return dot(axis, wheel_tensor(link.inertial) * axis);
 }
 
 void make_shapes(Wheel& wheel) {
@@ -148,7 +148,7 @@ void settle(Wheel& wheel) {
 
 namespace {
 
-void follow(const Wheel& wheel, Roller& roller) {
+void follow_roller(const Wheel& wheel, Roller& roller) {
   const Body& carrier = *wheel.body;
   Body& body = *roller.body;
   Roller::Turn& half = roller.turn;
@@ -167,7 +167,7 @@ void follow(const Wheel& wheel, Roller& roller) {
 
 void follow(Wheel& wheel) {
   for (Roller& roller : wheel.rollers)
-    if (roller.body->frozen) follow(wheel, roller);
+    if (roller.body->frozen) follow_roller(wheel, roller);
 }
 
 void roll_on(Wheel& wheel, double h) {
@@ -179,7 +179,7 @@ void roll_on(Wheel& wheel, double h) {
       if (slower > 0) joint.velocity *= speed > slower ? 1 - slower / speed : 0;
       joint.position += h * joint.velocity;
     }
-    follow(wheel, roller);
+    follow_roller(wheel, roller);
   }
 }
 
@@ -209,7 +209,7 @@ void choose_awake(Wheel& wheel) {
     roller.joint->effort = 0;
     body.force_N = body.torque_Nm = {};
     if (body.frozen) continue;
-    follow(wheel, roller);
+    follow_roller(wheel, roller);
     body.awake = wheel.body->awake;
     body.quick = wheel.body->quick;
     body.quiet_s = wheel.body->quiet_s;

@@ -14,7 +14,7 @@ using namespace sandlot::robios;
 /// Beyond these no robot drives and no world reaches.
 constexpr double most_m = 1e6, most_rad = 1e6, most_speed = 1e6, most_s = 1e6, most_Hz = 1e6;
 constexpr std::uint32_t most_pixels = 4096;  ///< of a screen's side
-constexpr std::size_t most_text_bytes = 400, most_lines = 200, menu_labels = 4;
+constexpr std::size_t most_text_bytes = 400, most_text_lines = 200, menu_labels = 4;
 constexpr std::size_t most_orders = 1000, most_notes = 100;
 
 bool all_within(double most, std::initializer_list<double> numbers) {
@@ -173,7 +173,7 @@ class Reader {
     if (too_many(OrderKind::text, 64)) return;
     ScreenLines lines;
     std::size_t count = 0;
-    while (!payload.empty() && count < menu_labels + most_lines) {
+    while (!payload.empty() && count < menu_labels + most_text_lines) {
       std::size_t length = 0;
       while (length < payload.size() && payload[length] != std::byte{0}) ++length;
       if (length == payload.size()) return refuse("a text has no end");

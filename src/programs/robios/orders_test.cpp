@@ -37,7 +37,7 @@ class Written {
   std::vector<std::byte> bytes;
 };
 
-Orders read(const Written& written) { return read_orders(written.bytes); }
+Orders orders_of(const Written& written) { return read_orders(written.bytes); }
 
 TEST(RobiosOrders, AreReadInTheirOrder) {
   Written written;
@@ -48,7 +48,7 @@ TEST(RobiosOrders, AreReadInTheirOrder) {
   written.add(OrderKind::radio, RadioOrder{2, 3}, "xyz");
   written.add_bytes(OrderKind::picture, "");
   written.add(OrderKind::wait, WaitOrder{7'000'000, wake_key, 0});
-  const Orders orders = read(written);
+  const Orders orders = orders_of(written);
   EXPECT_EQ(orders.refused, 0u) << orders.why;
   ASSERT_EQ(orders.orders.size(), 6u);
   EXPECT_EQ(std::get<SpeedOrder>(orders.orders[0]).w_radps, -1);
@@ -67,7 +67,7 @@ TEST(RobiosOrders, NothingThatCannotBeIsCarriedOut) {
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinite = std::numeric_limits<double>::infinity();
   const auto refused = [](const Written& written) {
-    const Orders orders = read(written);
+    const Orders orders = orders_of(written);
     EXPECT_TRUE(orders.orders.empty());
     EXPECT_NE(orders.why, "");
     return orders.refused;
@@ -82,7 +82,7 @@ TEST(RobiosOrders, NothingThatCannotBeIsCarriedOut) {
 }
 
 TEST(RobiosOrders, SizesAndKindsAreChecked) {
-  const auto refused = [](const Written& written) { return read(written).refused; };
+  const auto refused = [](const Written& written) { return orders_of(written).refused; };
   EXPECT_EQ(refused(Written().add(static_cast<OrderKind>(77), SpeedOrder{})), 1u);
   EXPECT_EQ(refused(Written().add(OrderKind::maneuver, SpeedOrder{})), 1u);
   EXPECT_EQ(refused(Written().add(OrderKind::maneuver, ManeuverOrder{5, 0, 0, 0, 0, 0, 0, 0})), 1u);
@@ -101,7 +101,7 @@ TEST(RobiosOrders, SizesAndKindsAreChecked) {
   cut.add(OrderKind::speed, SpeedOrder{1, 0});
   const OrderHead head{OrderKind::note, 1u << 30};
   cut.put(&head, sizeof head);
-  const Orders orders = read(cut);
+  const Orders orders = orders_of(cut);
   EXPECT_EQ(orders.orders.size(), 1u);
   EXPECT_EQ(orders.refused, 1u);
 }
@@ -109,17 +109,17 @@ TEST(RobiosOrders, SizesAndKindsAreChecked) {
 TEST(RobiosOrders, ATurnHasItsLimits) {
   Written many;
   for (int i = 0; i < 5000; ++i) many.add(OrderKind::speed, SpeedOrder{0.1, 0});
-  EXPECT_EQ(read(many).orders.size(), 1000u);
+  EXPECT_EQ(orders_of(many).orders.size(), 1000u);
   Written messages;
   for (int i = 0; i < 300; ++i) messages.add(OrderKind::radio, RadioOrder{0, 1}, "x");
-  EXPECT_EQ(read(messages).orders.size(), 256u);
-  EXPECT_EQ(read(messages).refused, 44u);
+  EXPECT_EQ(orders_of(messages).orders.size(), 256u);
+  EXPECT_EQ(orders_of(messages).refused, 44u);
 }
 
 TEST(RobiosOrders, NothingBehindTheEndCounts) {
   Written written;
   written.add(OrderKind::finished, std::int32_t{3}).add(OrderKind::speed, SpeedOrder{1, 1});
-  const Orders orders = read(written);
+  const Orders orders = orders_of(written);
   EXPECT_EQ(orders.finished, 3);
   EXPECT_TRUE(orders.orders.empty());
 }

@@ -17,7 +17,9 @@ namespace {
       _mm_xor_si128(_mm_clmulepi64_si128(data, k, 0x00), _mm_clmulepi64_si128(data, k, 0x11)), next);
 }
 
-inline __m128i load(const std::byte* from) { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from)); }
+inline __m128i load_block(const std::byte* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
 
 /// @param size  at least 64 and a multiple of 16
 /// @param crc   inverted, and so is the result
@@ -25,16 +27,16 @@ inline __m128i load(const std::byte* from) { return _mm_loadu_si128(reinterpret_
                                                             std::uint32_t crc) {
   const __m128i by_64 = _mm_set_epi64x(0x01c6e41596, 0x0154442bd4);
   const __m128i by_16 = _mm_set_epi64x(0x00ccaa009e, 0x01751997d0);
-  __m128i a = _mm_xor_si128(load(at), _mm_cvtsi32_si128(static_cast<int>(crc)));
-  __m128i b = load(at + 16), c = load(at + 32), d = load(at + 48);
+  __m128i a = _mm_xor_si128(load_block(at), _mm_cvtsi32_si128(static_cast<int>(crc)));
+  __m128i b = load_block(at + 16), c = load_block(at + 32), d = load_block(at + 48);
   for (at += 64, size -= 64; size >= 64; at += 64, size -= 64) {
-    a = fold(a, by_64, load(at));
-    b = fold(b, by_64, load(at + 16));
-    c = fold(c, by_64, load(at + 32));
-    d = fold(d, by_64, load(at + 48));
+    a = fold(a, by_64, load_block(at));
+    b = fold(b, by_64, load_block(at + 16));
+    c = fold(c, by_64, load_block(at + 32));
+    d = fold(d, by_64, load_block(at + 48));
   }
   a = fold(fold(fold(a, by_16, b), by_16, c), by_16, d);
-  for (; size >= 16; at += 16, size -= 16) a = fold(a, by_16, load(at));
+  for (; size >= 16; at += 16, size -= 16) a = fold(a, by_16, load_block(at));
   // 128 bits to 64, then Barrett's reduction to 32.
   const __m128i low = _mm_setr_epi32(~0, 0, ~0, 0);
   a = _mm_xor_si128(_mm_srli_si128(a, 8), _mm_clmulepi64_si128(a, by_16, 0x10));

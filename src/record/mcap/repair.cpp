@@ -10,7 +10,7 @@
 namespace sandlot::mcap {
 namespace {
 
-using Kind = Walk::Piece::Kind;
+using PieceKind = Walk::Piece::Kind;
 
 /// Walks through a file from beginning to end, over damages. `visit(piece)` gets what is whole.
 /// @return where the data end when a DataEnd record said so
@@ -28,7 +28,7 @@ Result<std::optional<Walk::Piece>> for_each_piece(Walk& walk, const InputFile& f
       if (!more) return std::optional<Walk::Piece>();
       continue;
     }
-    if (piece.kind == Kind::end) return std::optional(std::move(piece));
+    if (piece.kind == PieceKind::end) return std::optional(std::move(piece));
     SL_TRY(visit(piece));
   }
 }
@@ -93,11 +93,11 @@ Result<Examination> examine(const std::string& path, const Limits& limits) {
   std::uint64_t chunks = 0;
   SL_ASSIGN(const auto end,
             for_each_piece(walk, file, result.damages, [&](const Walk::Piece& piece) -> Status {
-              if (piece.kind == Kind::attachment) found.attachments.push_back(piece.attachment);
-              if (piece.kind == Kind::metadata) found.metadata.push_back(piece.metadata);
-              if (piece.kind != Kind::chunk && piece.kind != Kind::loose) return {};
+              if (piece.kind == PieceKind::attachment) found.attachments.push_back(piece.attachment);
+              if (piece.kind == PieceKind::metadata) found.metadata.push_back(piece.metadata);
+              if (piece.kind != PieceKind::chunk && piece.kind != PieceKind::loose) return {};
               found.add_chunk(entry_of(piece), piece.content.index_list());
-              if (piece.kind == Kind::loose) {
+              if (piece.kind == PieceKind::loose) {
                 found.chunks.pop_back();
                 for (const MessageIndex& index : piece.content.indexes)
                   result.loose_messages += index.records.size();
@@ -188,16 +188,16 @@ Result<Repaired> repair(const std::string& path, Examination before, const Limit
   std::vector<Damage> damages;
   SL_ASSIGN(const auto end, for_each_piece(walk, file, damages, [&](Walk::Piece& piece) -> Status {
               switch (piece.kind) {
-                case Kind::chunk:
-                case Kind::loose: {
+                case PieceKind::chunk:
+                case PieceKind::loose: {
                   w.clear();
-                  if (piece.content.indexes.empty() && piece.kind == Kind::loose) return {};
+                  if (piece.content.indexes.empty() && piece.kind == PieceKind::loose) return {};
                   define(piece.content);
                   SL_TRY(hand_over(w.bytes()));
                   w.clear();
                   ChunkIndex entry = entry_of(piece);
                   entry.offset = offset;
-                  if (piece.kind == Kind::loose) {
+                  if (piece.kind == PieceKind::loose) {
                     piece.content.head.crc = crc32(piece.content.records);
                     put_record_of(w, Op::chunk, [&] {
                       put(w, piece.content.head);
@@ -213,16 +213,16 @@ Result<Repaired> repair(const std::string& path, Examination before, const Limit
                   summary.add_chunk(std::move(entry), indexes);
                   return {};
                 }
-                case Kind::attachment:
+                case PieceKind::attachment:
                   piece.attachment.offset = offset;
                   summary.attachments.push_back(piece.attachment);
                   break;
-                case Kind::metadata:
+                case PieceKind::metadata:
                   piece.metadata.offset = offset;
                   summary.metadata.push_back(piece.metadata);
                   break;
-                case Kind::other:
-                case Kind::end: break;
+                case PieceKind::other:
+                case PieceKind::end: break;
               }
               return copy(piece.offset, piece.length);
             }));

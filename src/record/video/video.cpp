@@ -35,17 +35,17 @@ struct FreeContext {
   }
 };
 template <class T>
-using Owned = std::unique_ptr<T, FreeContext>;
+using AvOwned = std::unique_ptr<T, FreeContext>;
 
 }  // namespace
 
 struct VideoWriter::Impl {
   VideoOptions options;
-  Owned<AVFormatContext> format;
-  Owned<AVCodecContext> encoder;
-  Owned<AVFrame> frame;
-  Owned<AVPacket> packet;
-  Owned<SwsContext> scaler;
+  AvOwned<AVFormatContext> format;
+  AvOwned<AVCodecContext> encoder;
+  AvOwned<AVFrame> frame;
+  AvOwned<AVPacket> packet;
+  AvOwned<SwsContext> scaler;
   AVStream* stream = nullptr;
   std::uint64_t pictures = 0;
 

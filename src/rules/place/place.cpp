@@ -29,7 +29,7 @@ struct State {
   }
 };
 
-struct Place {
+struct PlaceRule {
   using Spec = place::Spec;
   using State = place::State;
   Spec spec;
@@ -58,7 +58,7 @@ struct Place {
 }  // namespace
 
 extern const RuleKind kind;
-constinit const RuleKind kind = make_rule<Place>({
+constinit const RuleKind kind = make_rule<PlaceRule>({
     .name = "place",
     .help = "Puts an object to a pose whenever a condition begins to hold.",
 });

@@ -26,7 +26,7 @@ using test::TestFolder;
 using testing::HasSubstr;
 
 /// Teams A, B, C...; a team's content is its name.
-TournamentSpec spec_of(Format format, int teams, int games, const std::string& store = "") {
+TournamentSpec tournament_spec(Format format, int teams, int games, const std::string& store = "") {
   TournamentSpec spec{
       .format = format, .teams = {}, .games = games, .rounds = 0, .first_seed = 1, .options = "half 60 s"};
   for (int i = 0; i < teams; ++i) {
@@ -50,7 +50,7 @@ GameResult chance(const Match& match) {
   return out;
 }
 
-TournamentSummary played(const TournamentSpec& spec, const PlayGame& play = chance) {
+TournamentSummary finished(const TournamentSpec& spec, const PlayGame& play = chance) {
   auto all = play_tournament(spec, play);
   EXPECT_TRUE(all) << all.error().text();
   return all ? std::move(*all) : TournamentSummary();
@@ -65,17 +65,17 @@ std::string outcome(TournamentSummary summary) {
 
 TEST(Tournament, GamesAtATimeChangeNothing) {
   for (const Format format : {Format::round_robin, Format::swiss, Format::knockout}) {
-    TournamentSpec spec = spec_of(format, 5, 4);
-    const std::string alone = outcome(played(spec));
+    TournamentSpec spec = tournament_spec(format, 5, 4);
+    const std::string alone = outcome(finished(spec));
     for (const int at_a_time : {2, 7, 0}) {
       spec.at_a_time = at_a_time;
-      EXPECT_EQ(outcome(played(spec)), alone);
+      EXPECT_EQ(outcome(finished(spec)), alone);
     }
   }
 }
 
 TEST(Tournament, TableAddsUpAndTheBetterTeamIsStrongerBeyondItsInterval) {
-  const TournamentSummary all = played(spec_of(Format::round_robin, 4, 40));
+  const TournamentSummary all = finished(tournament_spec(Format::round_robin, 4, 40));
   EXPECT_TRUE(all.ended);
   ASSERT_EQ(all.games.size(), 240u);
   ASSERT_EQ(all.table.size(), 4u);
@@ -109,8 +109,8 @@ TEST(Tournament, TableAddsUpAndTheBetterTeamIsStrongerBeyondItsInterval) {
 TEST(Tournament, WhatIsInTheStoreIsNotPlayedAgain) {
   const TestFolder folder;
   const std::string store = folder.file("results.db");
-  TournamentSpec spec = spec_of(Format::swiss, 5, 2, store);
-  const std::string whole = outcome(played(spec_of(Format::swiss, 5, 2)));
+  TournamentSpec spec = tournament_spec(Format::swiss, 5, 2, store);
+  const std::string whole = outcome(finished(tournament_spec(Format::swiss, 5, 2)));
   // Stopped within the eighth game, which does not count.
   std::atomic<int> count = 0;
   const auto part = play_tournament(
@@ -120,7 +120,7 @@ TEST(Tournament, WhatIsInTheStoreIsNotPlayedAgain) {
   EXPECT_EQ(part->games.size(), 7u);
   EXPECT_THAT(as_text(*part), HasSubstr("not at its end"));
   count = 0;
-  const TournamentSummary rest = played(spec, [&](const Match& match) { return ++count, chance(match); });
+  const TournamentSummary rest = finished(spec, [&](const Match& match) { return ++count, chance(match); });
   EXPECT_TRUE(rest.ended);
   EXPECT_EQ(count, 12 - 7);  // three rounds of two meetings with two games
   EXPECT_EQ(rest.stored, 7u);
@@ -128,12 +128,13 @@ TEST(Tournament, WhatIsInTheStoreIsNotPlayedAgain) {
   // Other options, another content: other games.
   count = 0;
   spec.options = "half 30 s";
-  played(spec, [&](const Match& match) { return ++count, chance(match); });
+  finished(spec, [&](const Match& match) { return ++count, chance(match); });
   EXPECT_EQ(count, 12);
   count = 0;
   spec.options = "half 60 s";
   spec.teams[0].content = "changed";
-  const TournamentSummary changed = played(spec, [&](const Match& match) { return ++count, chance(match); });
+  const TournamentSummary changed = finished(spec,
+                                             [&](const Match& match) { return ++count, chance(match); });
   int of_a = 0;
   for (const GameRow& row : changed.games) of_a += row.left == "A" || row.right == "A";
   EXPECT_EQ(count, of_a);
@@ -142,17 +143,17 @@ TEST(Tournament, WhatIsInTheStoreIsNotPlayedAgain) {
 
 TEST(Tournament, SidesAreDifferentGamesAndTheOrderOfTeamsIsNone) {
   const TestFolder folder;
-  TournamentSpec spec = spec_of(Format::round_robin, 3, 2, folder.file("results.db"));
-  const TournamentSummary first = played(spec);
+  TournamentSpec spec = tournament_spec(Format::round_robin, 3, 2, folder.file("results.db"));
+  const TournamentSummary first = finished(spec);
   std::set<std::uint64_t> hashes;
   for (const GameRow& row : first.games) hashes.insert(row.state_hash.value);
   EXPECT_EQ(hashes.size(), 6u);
   // The same teams in another order meet on other sides in some games, with the same result where they meet on the same.
   std::reverse(spec.teams.begin(), spec.teams.end());
-  const TournamentSummary second = played(spec);
+  const TournamentSummary second = finished(spec);
   TournamentSpec without = spec;
   without.store_file = "";
-  EXPECT_EQ(outcome(second), outcome(played(without)));
+  EXPECT_EQ(outcome(second), outcome(finished(without)));
   for (const GameRow& b : second.games)
     for (const GameRow& a : first.games) {
       if (a.left != b.left || a.right != b.right || a.seed != b.seed) continue;
@@ -163,7 +164,7 @@ TEST(Tournament, SidesAreDifferentGamesAndTheOrderOfTeamsIsNone) {
 
 TEST(Tournament, GoesOnAfterItWasKilled) {
   const TestFolder folder;
-  const TournamentSpec spec = spec_of(Format::knockout, 6, 3, folder.file("results.db"));
+  const TournamentSpec spec = tournament_spec(Format::knockout, 6, 3, folder.file("results.db"));
   // A process that kills itself within its fifth game, as kill -9 does.
   const pid_t child = fork();
   ASSERT_GE(child, 0);
@@ -179,16 +180,16 @@ TEST(Tournament, GoesOnAfterItWasKilled) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
   std::atomic<std::size_t> count = 0;
-  const TournamentSummary rest = played(spec, [&](const Match& match) { return ++count, chance(match); });
+  const TournamentSummary rest = finished(spec, [&](const Match& match) { return ++count, chance(match); });
   EXPECT_TRUE(rest.ended);
   EXPECT_EQ(rest.stored, 4u);
   EXPECT_EQ(count, rest.games.size() - 4);
-  EXPECT_EQ(outcome(rest), outcome(played(spec_of(Format::knockout, 6, 3))));
+  EXPECT_EQ(outcome(rest), outcome(finished(tournament_spec(Format::knockout, 6, 3))));
 }
 
 TEST(Tournament, WalkOversAreKeptWithTheirReason) {
   const TestFolder folder;
-  const TournamentSpec spec = spec_of(Format::round_robin, 2, 2, folder.file("results.db"));
+  const TournamentSpec spec = tournament_spec(Format::round_robin, 2, 2, folder.file("results.db"));
   const auto never_there = [](const Match& match) {
     const std::size_t loser = match.teams[0].name == "B" ? 0 : 1;
     GameResult out;
@@ -197,7 +198,7 @@ TEST(Tournament, WalkOversAreKeptWithTheirReason) {
     out.reason = "B loses by rule: none of its programs answered, \"no\"";
     return out;
   };
-  const TournamentSummary first = played(spec, never_there), second = played(spec, never_there);
+  const TournamentSummary first = finished(spec, never_there), second = finished(spec, never_there);
   EXPECT_EQ(second.stored, 2u);
   EXPECT_EQ(outcome(first), outcome(second));
   EXPECT_TRUE(second.games[0].walk_over);
@@ -210,14 +211,14 @@ TEST(Tournament, WalkOversAreKeptWithTheirReason) {
 
 TEST(Tournament, RecordingsOfStoredGamesAreFoundAgain) {
   const TestFolder folder;
-  TournamentSpec spec = spec_of(Format::round_robin, 2, 2, folder.file("results.db"));
+  TournamentSpec spec = tournament_spec(Format::round_robin, 2, 2, folder.file("results.db"));
   spec.recordings = folder.path.string();
   const auto recorded = [&](const Match& match) {
     GameResult out = chance(match);
     if (match.game.seed == 1) out.recording = folder.write(match.name + ".mcap", "bytes");
     return out;
   };
-  const TournamentSummary first = played(spec, recorded), second = played(spec, recorded);
+  const TournamentSummary first = finished(spec, recorded), second = finished(spec, recorded);
   EXPECT_EQ(second.stored, 2u);
   EXPECT_EQ(first.games[0].recording, folder.file("r1_A_B_s1.mcap"));
   EXPECT_EQ(second.games[0].recording, first.games[0].recording);
@@ -226,7 +227,7 @@ TEST(Tournament, RecordingsOfStoredGamesAreFoundAgain) {
 
 TEST(Tournament, AGameWithoutAResultIsNamedAndTheOthersOfItsRoundArePlayed) {
   const TestFolder folder;
-  const TournamentSpec spec = spec_of(Format::round_robin, 3, 2, folder.file("results.db"));
+  const TournamentSpec spec = tournament_spec(Format::round_robin, 3, 2, folder.file("results.db"));
   std::string failed;
   int count = 0;
   const auto fails_once = [&](const Match& match) -> Result<GameResult> {
@@ -255,16 +256,16 @@ TEST(Tournament, AGameWithoutAResultIsNamedAndTheOthersOfItsRoundArePlayed) {
   EXPECT_THAT(as_text(*first), HasSubstr("5 games, 1 more could not be played; not at its end"));
   EXPECT_THAT(games_csv(*first), HasSubstr(",false,false,false,it was ended by signal 11,"));
   // Once more: it alone.
-  const TournamentSummary second = played(spec);
+  const TournamentSummary second = finished(spec);
   EXPECT_TRUE(second.ended);
   EXPECT_EQ(second.stored, 5u);
   EXPECT_EQ(second.not_played, 0u);
-  EXPECT_EQ(outcome(second), outcome(played(spec_of(Format::round_robin, 3, 2))));
+  EXPECT_EQ(outcome(second), outcome(finished(tournament_spec(Format::round_robin, 3, 2))));
 }
 
 TEST(Tournament, LaterRoundsWaitForAGameWithoutAResult) {
   const TestFolder folder;
-  const TournamentSpec spec = spec_of(Format::knockout, 4, 1, folder.file("results.db"));
+  const TournamentSpec spec = tournament_spec(Format::knockout, 4, 1, folder.file("results.db"));
   const auto without_d = [&](const Match& match) -> Result<GameResult> {
     if (match.teams[0].name == "D" || match.teams[1].name == "D") return Error{"no"};
     GameResult out = chance(match);
@@ -280,17 +281,17 @@ TEST(Tournament, LaterRoundsWaitForAGameWithoutAResult) {
 
 TEST(Tournament, RefusesTwoTeamsOfOneNameAndStoresThatAreNone) {
   const TestFolder folder;
-  TournamentSpec spec = spec_of(Format::round_robin, 2, 1);
+  TournamentSpec spec = tournament_spec(Format::round_robin, 2, 1);
   spec.teams[1].name = "A";
   EXPECT_THAT(play_tournament(spec, chance).error().text(), HasSubstr("two teams are called 'A'"));
-  spec = spec_of(Format::round_robin, 2, 1, folder.write("notes.txt", std::string(4096, 'x')));
+  spec = tournament_spec(Format::round_robin, 2, 1, folder.write("notes.txt", std::string(4096, 'x')));
   EXPECT_THAT(play_tournament(spec, chance).error().text(), HasSubstr("is not a store of results"));
-  spec = spec_of(Format::round_robin, 1, 1);
+  spec = tournament_spec(Format::round_robin, 1, 1);
   EXPECT_THAT(play_tournament(spec, chance).error().text(), HasSubstr("two teams"));
 }
 
 TEST(TournamentReports, HaveALineForEachRow) {
-  const TournamentSummary all = played(spec_of(Format::round_robin, 3, 2));
+  const TournamentSummary all = finished(tournament_spec(Format::round_robin, 3, 2));
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   EXPECT_EQ(lines(table_csv(all)), 4);
   EXPECT_EQ(lines(pairs_csv(all)), 4);

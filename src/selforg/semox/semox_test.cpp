@@ -2,7 +2,7 @@
 
 #include "selforg/test_reference.h"
 
-namespace sandlot::selforg::test {
+namespace sandlot::selforg::test::semox_test {
 namespace {
 
 Stream stream(std::uint64_t sample) { return {4, entity_key("semox"), Purpose::experiment, sample}; }
@@ -157,4 +157,4 @@ TEST(Semox, PainStopsTheModel) {
 }
 
 }  // namespace
-}  // namespace sandlot::selforg::test
+}  // namespace sandlot::selforg::test::semox_test

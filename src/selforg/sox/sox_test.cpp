@@ -2,7 +2,7 @@
 
 #include "selforg/test_reference.h"
 
-namespace sandlot::selforg::test {
+namespace sandlot::selforg::test::sox_test {
 namespace {
 
 Stream stream(std::uint64_t sample) { return {3, entity_key("sox"), Purpose::experiment, sample}; }
@@ -299,4 +299,4 @@ TEST(Sox, TheExtendedModelTellsItsOwnEffectFromTheEnvironments) {
 }
 
 }  // namespace
-}  // namespace sandlot::selforg::test
+}  // namespace sandlot::selforg::test::sox_test

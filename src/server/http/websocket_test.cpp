@@ -82,7 +82,7 @@ struct Echo {
   }
 };
 
-std::string text_of(const Result<WebSocketClient::Message>& m) {
+std::string words_of(const Result<WebSocketClient::Message>& m) {
   return m ? std::string(reinterpret_cast<const char*>(m->bytes.data()), m->bytes.size()) : m.error().text();
 }
 
@@ -229,10 +229,10 @@ TEST(WebSocket, HeadAndPayloadAreOneMessageHoweverLong) {
     ASSERT_TRUE(
         echo.transport->send(echo.last(), std::as_bytes(std::span(head)), payload(body), false, true));
     const auto got = client->receive(5);
-    EXPECT_TRUE(text_of(got) == head + body) << size;
+    EXPECT_TRUE(words_of(got) == head + body) << size;
   }
   EXPECT_TRUE(echo.transport->send(echo.last(), std::as_bytes(std::span(head)), nullptr, false, true));
-  EXPECT_EQ(text_of(client->receive(5)), head);
+  EXPECT_EQ(words_of(client->receive(5)), head);
   EXPECT_TRUE(echo.transport->send_text(echo.last(), "text"));
   const auto text = client->receive(5);
   EXPECT_TRUE(text && text->text);
@@ -252,7 +252,7 @@ TEST(WebSocket, AStalledReaderLosesFramesAndTheOthersDoNot) {
     sent += echo.transport->send(slow_id, {}, frame_bytes, false, true);
     most_waiting = std::max(most_waiting, echo.transport->waiting_bytes(slow_id));
     ASSERT_TRUE(echo.transport->send(id, {}, frame_bytes, false, true)) << i;
-    ASSERT_EQ(text_of(client->receive(5)).size(), 100'000u) << i;
+    ASSERT_EQ(words_of(client->receive(5)).size(), 100'000u) << i;
   }
   EXPECT_LT(sent, 300u);
   EXPECT_EQ(echo.transport->counters().dropped, 300 - sent);
@@ -295,7 +295,7 @@ TEST(WebSocket, AnEmptyQueueTakesAMessageOfAnySize) {
   Echo echo({.queue_bytes = 1000});
   const auto client = echo.client();
   EXPECT_TRUE(echo.transport->send(echo.last(), {}, payload(std::string(5'000'000, 'x')), false, true));
-  EXPECT_EQ(text_of(client->receive(5)).size(), 5'000'000u);
+  EXPECT_EQ(words_of(client->receive(5)).size(), 5'000'000u);
 }
 
 TEST(WebSocket, ManyEmptyMessagesAreBoundedToo) {
@@ -344,7 +344,7 @@ TEST(WebSocket, CloseClientSendsWhatIsQueuedThenTheReason) {
   // A reason is not cut within a letter.
   const auto client = echo.client();
   echo.transport->close_client(echo.last(), std::string(122, 'x') + "é");
-  const auto end = text_of(client->receive(5));
+  const auto end = words_of(client->receive(5));
   EXPECT_TRUE(end.ends_with(std::string(122, 'x'))) << end;
   EXPECT_FALSE(client->open());
   echo.transport->close_client(123456, "nobody");
@@ -388,7 +388,7 @@ TEST(WebSocket, StopSaysGoodByeAndDoesNotWaitForTheStalled) {
   twice.join();
   EXPECT_EQ(echo.count(&Echo::gone), 3u) << "no client is forgotten";
   EXPECT_EQ(polite.closing().code(), 1001);
-  EXPECT_NE(text_of(client->receive(5)).find("the server ends"), std::string::npos);
+  EXPECT_NE(words_of(client->receive(5)).find("the server ends"), std::string::npos);
   half.rest();
   EXPECT_TRUE(half.ended);
   EXPECT_FALSE(echo.transport->send_text(echo.last(), "late"));
@@ -463,20 +463,20 @@ TEST(WebSocketClient, SaysWhyItCannotConnect) {
 TEST(WebSocketClient, WaitsAndKeepsTheOrderAndTellsWhenItIsOver) {
   Echo echo;
   const auto client = echo.client();
-  EXPECT_EQ(text_of(client->receive(0.05)), "nothing came in time");
+  EXPECT_EQ(words_of(client->receive(0.05)), "nothing came in time");
   EXPECT_TRUE(client->open());
   for (int i = 0; i < 100; ++i) {
     const auto number = std::to_string(i);
     EXPECT_TRUE(client->send(std::as_bytes(std::span(number)), true));
   }
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(text_of(client->receive(5)), "echo " + std::to_string(i));
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(words_of(client->receive(5)), "echo " + std::to_string(i));
   // What came before the end is still received.
   echo.transport->send_text(echo.last(), "last words");
   echo.transport->close_client(echo.last(), "enough");
   EXPECT_TRUE(soon([&] { return echo.count(&Echo::gone) == 1; }));
   EXPECT_TRUE(client->open());
-  EXPECT_EQ(text_of(client->receive(5)), "last words");
-  EXPECT_EQ(text_of(client->receive(5)), "the server ended the connection: enough");
+  EXPECT_EQ(words_of(client->receive(5)), "last words");
+  EXPECT_EQ(words_of(client->receive(5)), "the server ended the connection: enough");
   EXPECT_FALSE(client->open());
   EXPECT_FALSE(client->send({}, true));
 }
@@ -490,7 +490,7 @@ TEST(WebSocketClient, StopsReadingWhatNobodyReceives) {
   ASSERT_TRUE(soon([&] { return echo.transport->waiting_bytes(echo.last()) < 85'000'000; }));
   ::usleep(200'000);
   EXPECT_GT(echo.transport->waiting_bytes(echo.last()), 60'000'000u);
-  for (int i = 0; i < 150; ++i) ASSERT_EQ(text_of(client->receive(5)).size(), 1'000'000u) << i;
+  for (int i = 0; i < 150; ++i) ASSERT_EQ(words_of(client->receive(5)).size(), 1'000'000u) << i;
 }
 
 }  // namespace

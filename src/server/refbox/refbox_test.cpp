@@ -37,8 +37,9 @@ LogEntry said(std::uint64_t sequence, const std::string& command, const std::str
 }
 
 /// A box whose run stands still, and base stations of it.
-struct Box {
-  explicit Box(const std::string& teams = "", const std::string& protocols = "", RefboxOptions options = {})
+struct ServedBox {
+  explicit ServedBox(const std::string& teams = "", const std::string& protocols = "",
+                     RefboxOptions options = {})
       : session(sandlot::test::build(sandlot::test::arena("planar", 1, "")), {}) {
     auto read = read_refbox_teams(teams, protocols);
     EXPECT_TRUE(read) << read.error().text();
@@ -121,7 +122,7 @@ TEST(RefboxTeams, AreRead) {
 }
 
 TEST(Refbox, TellsASetPieceInBothProtocols) {
-  Box box("", "cyan=json,magenta=2009");
+  ServedBox box("", "cyan=json,magenta=2009");
   Socket cyan = box.station();
   EXPECT_EQ(next(cyan), R"({"command":"WELCOME","targetTeam":"224.16.32.1"})");
   Socket magenta = box.station();
@@ -141,7 +142,7 @@ TEST(Refbox, TellsASetPieceInBothProtocols) {
 }
 
 TEST(Refbox, PassesOnWhatARuleOfTheRunSays) {
-  Box box;
+  ServedBox box;
   Socket cyan = box.station();
   EXPECT_NE(next(cyan), "");
   Simulation& world = box.session.simulation();
@@ -164,7 +165,7 @@ TEST(Refbox, PassesOnWhatARuleOfTheRunSays) {
 }
 
 TEST(Refbox, KeepsTheLatestWorldStateAndGoesOnAfterWrongOnes) {
-  Box box;
+  ServedBox box;
   Socket cyan = box.station();
   EXPECT_NE(next(cyan), "");
   cyan.send("hello\0"s + good_state + "\0"s + R"({"type":"worldstate"})" + "\0"s);
@@ -184,7 +185,7 @@ TEST(Refbox, KeepsTheLatestWorldStateAndGoesOnAfterWrongOnes) {
 }
 
 TEST(RefboxAttacks, AFloodWithoutNulEndsItsConnectionAlone) {
-  Box box;
+  ServedBox box;
   Socket cyan = box.station();
   EXPECT_NE(next(cyan), "");
   Socket magenta = box.station();
@@ -200,7 +201,7 @@ TEST(RefboxAttacks, AFloodWithoutNulEndsItsConnectionAlone) {
 }
 
 TEST(RefboxAttacks, AFloodOfMessagesIsDroppedBeyondItsRate) {
-  Box box;
+  ServedBox box;
   Socket cyan = box.station();
   EXPECT_NE(next(cyan), "");
   std::string flood;
@@ -215,7 +216,7 @@ TEST(RefboxAttacks, AFloodOfMessagesIsDroppedBeyondItsRate) {
 }
 
 TEST(RefboxAttacks, HalfAMessageIsForgottenWithItsConnection) {
-  Box box;
+  ServedBox box;
   {
     Socket cyan = box.station();
     EXPECT_NE(next(cyan), "");
@@ -231,7 +232,7 @@ TEST(RefboxAttacks, HalfAMessageIsForgottenWithItsConnection) {
 }
 
 TEST(RefboxAttacks, TeamsFromOneAddressAreTakenInTurnAndAThirdIsSentAway) {
-  Box box;
+  ServedBox box;
   Socket cyan = box.station();
   EXPECT_EQ(next(cyan), R"({"command":"WELCOME","targetTeam":"224.16.32.1"})");
   Socket magenta = box.station();
@@ -246,7 +247,7 @@ TEST(RefboxAttacks, TeamsFromOneAddressAreTakenInTurnAndAThirdIsSentAway) {
 }
 
 TEST(RefboxAttacks, WhoIsOfNoTeamIsSentAway) {
-  Box box("cyan=127.0.0.1,magenta=127.0.0.9");
+  ServedBox box("cyan=127.0.0.1,magenta=127.0.0.9");
   Socket cyan = box.station();
   EXPECT_NE(next(cyan), "");
   Socket other = box.station();
@@ -256,7 +257,7 @@ TEST(RefboxAttacks, WhoIsOfNoTeamIsSentAway) {
 }
 
 TEST(RefboxAttacks, WhoNeverReadsIsDisconnected) {
-  Box box("", "", {.queue_bytes = 4096, .send_buffer_bytes = 4096});
+  ServedBox box("", "", {.queue_bytes = 4096, .send_buffer_bytes = 4096});
   Socket cyan(box.box->port(), 2048);
   ASSERT_TRUE(box.soon_connected(Side::cyan));
   Socket magenta = box.station();
@@ -274,7 +275,7 @@ TEST(RefboxAttacks, WhoNeverReadsIsDisconnected) {
 
 TEST(RefboxAttacks, NothingThatStationsDoChangesTheRun) {
   const auto hash_of = [](bool attacked) {
-    Box box;
+    ServedBox box;
     std::vector<std::uint64_t> hashes;
     std::optional<Socket> cyan;
     if (attacked) {

@@ -33,27 +33,29 @@ struct Loaded {
   std::string name, file;
   std::vector<std::byte> snapshot;  ///< of its first state
 };
-Loaded refused(std::uint8_t code, const std::string& why) { return {code, why, "", "", {}}; }
+Loaded refused_load(std::uint8_t code, const std::string& why) { return {code, why, "", "", {}}; }
 
 /// Reads and builds a world. It starts no process, and brings no plugin along that was not on this machine's disk.
-Loaded load(const Session& session, const Console::Options& console, const LoadWorld::Request& request) {
+Loaded loaded_world(const Session& session, const Console::Options& console,
+                    const LoadWorld::Request& request) {
   using Code = LoadWorld::Response;
   const auto& resource = request.world_resource;
   const bool by_text = resource.uri.empty();
   if (by_text && resource.resource_string.empty())
-    return refused(Code::no_resource, "uri and resource_string are empty");
+    return refused_load(Code::no_resource, "uri and resource_string are empty");
   std::string file;
   if (by_text) {
     std::string format = format_of_text(resource.resource_string);
     const std::size_t begin = resource.resource_string.find_first_not_of(" \t\r\n");
     const bool xml = begin != std::string::npos && resource.resource_string[begin] == '<';
     if (format.empty() && xml)
-      return refused(Code::unsupported_format, "resource_string is neither SDF, nor URDF, nor a scenario");
+      return refused_load(Code::unsupported_format,
+                          "resource_string is neither SDF, nor URDF, nor a scenario");
     file = (console.folder.empty() ? "." : console.folder) + "/resource_string." +
            (format.empty() ? "yaml" : format);
   } else {
     const auto found = console::resource_file(console, resource.uri, console::world_files(console));
-    if (!found) return refused(SimResult::not_found, found.error().text());
+    if (!found) return refused_load(SimResult::not_found, found.error().text());
     file = *found;
   }
   LoadOptions options;
@@ -66,12 +68,12 @@ Loaded load(const Session& session, const Console::Options& console, const LoadW
     Diagnostics ignored;
     options.skip_missing = true;
     const bool by_assets = static_cast<bool>(sandlot::load(file, options, ignored));
-    return refused(by_assets ? Code::missing_assets : Code::resource_parse_error, setup.error().text());
+    return refused_load(by_assets ? Code::missing_assets : Code::resource_parse_error, setup.error().text());
   }
   if (request.fail_on_unsupported_element && !diagnostics.warnings.empty())
-    return refused(Code::unsupported_elements, diagnostics.warnings.front().text());
+    return refused_load(Code::unsupported_elements, diagnostics.warnings.front().text());
   if (by_text && !setup->plugins.empty())
-    return refused(SimResult::operation_failed, "a text loads no plugins: they are code");
+    return refused_load(SimResult::operation_failed, "a text loads no plugins: they are code");
   SimulationOptions how = session.simulation_options();
   how.start_programs = false;
   Diagnostics ignored;
@@ -79,7 +81,7 @@ Loaded load(const Session& session, const Console::Options& console, const LoadW
   out.name = setup->name;
   if (!by_text) out.file = file;
   auto made = Simulation::create(std::move(*setup), how, ignored);
-  if (!made) return refused(Code::resource_parse_error, made.error().text());
+  if (!made) return refused_load(Code::resource_parse_error, made.error().text());
   out.snapshot = (*made)->snapshot();
   return out;
 }
@@ -165,7 +167,7 @@ void load_world(const ServiceContext& context, const LoadWorld::Request& request
   ServiceHost& host = context.host;
   host.post([reply, request, &console = host.console(), &memory = host.memory(),
              back = host.way_back()](Session& session) {
-    auto loaded = std::make_shared<Loaded>(load(session, console.options(), request));
+    auto loaded = std::make_shared<Loaded>(loaded_world(session, console.options(), request));
     if (loaded->code != SimResult::ok) return reply_result(reply, loaded->code, loaded->why);
     session.pause();
     session.load(std::move(loaded->snapshot), [reply, loaded, back, &memory, &session](const Status& status) {

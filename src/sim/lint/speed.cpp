@@ -36,7 +36,7 @@ std::optional<double> thickness_m(const Shape& shape) {
   return std::nullopt;  // planes and terrain have no far side; of a cone or a mesh it is not known
 }
 
-std::vector<Wall> walls_of(const Simulation& simulation) {
+std::vector<Wall> walls_near(const Simulation& simulation) {
   std::vector<Wall> walls;
   for (const model::Instance* instance : simulation.instances()) {
     if (!instance->model->is_static) continue;
@@ -83,7 +83,7 @@ bool takes_commands(const Simulation::Device& device) { return !device.commands.
 }  // namespace
 
 void check_speed(const Simulation& simulation, Findings& findings) {
-  const std::vector<Wall> walls = walls_of(simulation);
+  const std::vector<Wall> walls = walls_near(simulation);
   if (walls.empty()) return;
   const double h_s = simulation.setup().step.s() / simulation.setup().substeps;
   for (const auto& entity : simulation.entities()) {

@@ -173,7 +173,7 @@ std::optional<double> drop_m(const Simulation& simulation, const Entity& entity,
 }
 
 /// Takes commands, or has a program that gives them: a box with a camera on it may well be dropped on purpose.
-bool drives(const Entity& entity) {
+bool has_drive(const Entity& entity) {
   return !entity.programs.empty() ||
          std::any_of(entity.devices.begin(), entity.devices.end(),
                      [](const auto& device) { return !device->commands.empty(); });
@@ -227,7 +227,7 @@ void check_start(const Simulation& simulation, Findings& findings) {
                          " away from everything that stands in this world",
                      "lengths are in m: is its pose in mm?", instance.place);
     }
-    if (!falls || hangs(model) || !drives(*entity)) continue;
+    if (!falls || hangs(model) || !has_drive(*entity)) continue;
     const auto drop = drop_m(simulation, *entity, bounds);
     if (!drop)
       findings.add("nothing_below",

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t most_kept = 512;
 
 /// Memory of a tick's input: its entries, what they hold, and the node of the map.
-std::size_t size_of(const std::vector<LogEntry>& input) {
+std::size_t input_size(const std::vector<LogEntry>& input) {
   std::size_t size = 80 + input.size() * sizeof(LogEntry);
   for (const LogEntry& entry : input)
     size += entry.target.capacity() + entry.type.capacity() + entry.bytes.capacity() + entry.why.capacity();
@@ -35,7 +35,7 @@ void InputLog::set(std::uint64_t tick, std::vector<LogEntry> input) {
   if (const auto before = entries.find(tick); before != entries.end()) forget(before, std::next(before));
   if (input.empty()) return;
   input.shrink_to_fit();
-  size_ += size_of(input);
+  size_ += input_size(input);
   entries.emplace(tick, std::move(input));
 }
 
@@ -44,7 +44,7 @@ void InputLog::forget_before(std::uint64_t tick) { forget(entries.begin(), entri
 void InputLog::forget_after(std::uint64_t tick) { forget(entries.upper_bound(tick), entries.end()); }
 
 void InputLog::forget(Entries::iterator first, Entries::iterator last) {
-  for (auto at = first; at != last; ++at) size_ -= size_of(at->second);
+  for (auto at = first; at != last; ++at) size_ -= input_size(at->second);
   entries.erase(first, last);
 }
 

@@ -11,7 +11,7 @@
 namespace sandlot::test {
 namespace {
 
-model::Setup rolling(double stop_s) {
+model::Setup rolling_until(double stop_s) {
   model::Setup setup;
   setup.engine = "rigid";
   setup.stop = Time::from_s(stop_s);
@@ -30,7 +30,7 @@ struct Steps final : StepObserver {
 /// By hand: 20 ticks of 10 ms at real time; the first one begins the stretch, the other 19 take 190 ms in all, but for how late the
 /// ends of the first and the last are. What is waited for is in the intervals and not in what the ticks took to compute.
 TEST(StepTimes, SumUpToRealTime) {
-  Session session(build(rolling(0.2)), {.pace = {1.0}});
+  Session session(build(rolling_until(0.2)), {.pace = {1.0}});
   Steps seen;
   session.add_step_observer(&seen);
   RunReport report;
@@ -52,7 +52,7 @@ TEST(StepTimes, SumUpToRealTime) {
 }
 
 TEST(StepTimes, BeginAgainAfterAPauseAndAJump) {
-  Session session(build(rolling(0.2)), {});
+  Session session(build(rolling_until(0.2)), {});
   Steps seen;
   session.add_step_observer(&seen);
   RunReport report;
@@ -81,7 +81,7 @@ TEST(StepTimes, BeginAgainAfterAPauseAndAJump) {
 TEST(StepTimes, ChangeNothingOfTheRun) {
   std::uint64_t hash[2];
   for (const bool measured : {false, true}) {
-    Session session(build(rolling(0.2)), {});
+    Session session(build(rolling_until(0.2)), {});
     Steps seen;
     if (measured) session.add_step_observer(&seen);
     RunReport report;

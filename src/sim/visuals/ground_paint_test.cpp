@@ -8,7 +8,7 @@
 namespace sandlot::test {
 namespace {
 
-Node numbers(std::initializer_list<double> values) {
+Node paint_numbers(std::initializer_list<double> values) {
   Node out = Node::sequence();
   for (const double value : values) out.push(Node::scalar(std::to_string(value)));
   return out;
@@ -17,8 +17,8 @@ Node numbers(std::initializer_list<double> values) {
 model::ElementDecl disc(const char* name, double x, const char* radius, std::initializer_list<double> color,
                         const char* visible) {
   Node config = map({{"radius", radius}, {"visible", visible}});
-  config.set("centre", numbers({x, 0}));
-  config.set("color", numbers(color));
+  config.set("centre", paint_numbers({x, 0}));
+  config.set("color", paint_numbers(color));
   return {name, "disc", std::move(config), {}};
 }
 

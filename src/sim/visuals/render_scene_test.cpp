@@ -23,7 +23,7 @@ model::Visual visual(const Shape& shape, Pose X_LC, Color color) {
 }
 
 /// A ground plane, a labelled ball and a cart of two visuals.
-model::Setup world() {
+model::Setup render_world() {
   model::Setup setup;
   setup.instances.push_back(test::placed("ground", test::one_shape("plane", Plane{{0, 0, 1}}, 0), {}));
   model::Instance ball = test::placed("ball1", test::one_shape("size5", Sphere{0.11}, 0.4),
@@ -41,7 +41,7 @@ model::Setup world() {
 
 TEST(RenderScene, NamesLabelsColoursAndBoundsOfThings) {
   Diagnostics diagnostics;
-  auto sim = Simulation::create(world(), {}, diagnostics);
+  auto sim = Simulation::create(render_world(), {}, diagnostics);
   ASSERT_TRUE(sim) << sim.error().what;
   const auto& things = (*sim)->render_scene().labelled_objects;
   ASSERT_EQ(things.size(), 2u);  // the ground has no bounds
@@ -61,7 +61,7 @@ TEST(RenderScene, NamesLabelsColoursAndBoundsOfThings) {
 
 TEST(RenderScene, FollowsWhatComesAndGoesAndKeepsInstanceNumbers) {
   Diagnostics diagnostics;
-  auto sim = Simulation::create(world(), {}, diagnostics);
+  auto sim = Simulation::create(render_world(), {}, diagnostics);
   ASSERT_TRUE(sim);
   const std::uint32_t cart = (*sim)->render_scene().labelled_objects[1].instance;
   (*sim)->submit(DeleteRequest{"ball1"});
@@ -78,8 +78,8 @@ TEST(RenderScene, FollowsWhatComesAndGoesAndKeepsInstanceNumbers) {
 
 TEST(RenderScene, DrawsTheWorldWithoutChangingTheRun) {
   Diagnostics diagnostics;
-  auto seen = Simulation::create(world(), {}, diagnostics),
-       plain = Simulation::create(world(), {}, diagnostics);
+  auto seen = Simulation::create(render_world(), {}, diagnostics),
+       plain = Simulation::create(render_world(), {}, diagnostics);
   ASSERT_TRUE(seen && plain);
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE((*seen)->tick());
@@ -111,7 +111,7 @@ constexpr const char* boards = R"(<sdf version="1.9"><world name="w">
 <model name="again"><static>1</static><pose>0 50 0 0 0 0</pose><link name="l"><visual name="v"><geometry><mesh><uri>board.obj</uri></mesh></geometry></visual></link></model>
 <model name="eye"><static>1</static><link name="l"><sensor name="camera" type="camera"><update_rate>10</update_rate><camera>
 <image><width>8</width><height>8</height></image></camera></sensor></link></model>
-</world></sdf>)";
+</render_world></sdf>)";
 
 TEST(RenderScene, MissingTexturesAreACheckerAndOneWarningEach) {
   const test::TestFolder folder;

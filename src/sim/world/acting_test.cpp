@@ -8,7 +8,7 @@
 namespace sandlot::test {
 namespace {
 
-Node numbers(std::initializer_list<double> values) {
+Node speeds_node(std::initializer_list<double> values) {
   Node out = Node::sequence();
   for (const double value : values) out.push(Node::scalar(std::to_string(value)));
   return out;
@@ -304,7 +304,7 @@ model::Setup agents(Node keys, const char* engine, bool wall = false) {
   other.is_robot = true;
   other.team = "red";
   Node speed = map({{"max_acceleration", "1e9"}});
-  speed.set("initial_linear", numbers({0.5, 0, 0}));
+  speed.set("initial_linear", speeds_node({0.5, 0, 0}));
   other.devices.push_back(device("mover", "body_velocity", std::move(speed)));
   setup.instances.push_back(other);
   setup.teams.emplace_back().name = "red";

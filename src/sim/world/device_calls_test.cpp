@@ -90,8 +90,8 @@ struct Author {
   }
 };
 const Kind author_kind = make_kind<Author>({.name = "author", .help = "For tests."});
-const Kind* const own_kinds[] = {&author_kind, &printer_kind};
-const SimulationOptions with_kinds{.threads = 1, .run_programs = true, .extra_kinds = own_kinds};
+const Kind* const call_kinds[] = {&author_kind, &printer_kind};
+const SimulationOptions with_call_kinds{.threads = 1, .run_programs = true, .extra_kinds = call_kinds};
 
 model::Setup office(std::initializer_list<model::DeviceDecl> devices) {
   model::Setup setup;
@@ -106,7 +106,7 @@ model::Setup office(std::initializer_list<model::DeviceDecl> devices) {
 
 std::string error_with_kinds(model::Setup setup) {
   Diagnostics diagnostics;
-  const auto made = Simulation::create(std::move(setup), with_kinds, diagnostics);
+  const auto made = Simulation::create(std::move(setup), with_call_kinds, diagnostics);
   return made ? "" : made.error().text();
 }
 
@@ -118,7 +118,7 @@ const std::string& paper(const Simulation& simulation) {
 }
 
 TEST(OrderQueue, HandsOverSeveralOrdersOfATickInTheirOrderAndRefusesTheRest) {
-  const auto simulation = build(office({device("printer", "printer")}), with_kinds);
+  const auto simulation = build(office({device("printer", "printer")}), with_call_kinds);
   for (const char* line : {"a", "b", "c", "d"}) print(*simulation, line);
   advance(*simulation, 1);
   ASSERT_EQ(simulation->outcomes().size(), 4u);
@@ -129,7 +129,7 @@ TEST(OrderQueue, HandsOverSeveralOrdersOfATickInTheirOrderAndRefusesTheRest) {
   EXPECT_EQ(paper(*simulation), "a");
   EXPECT_EQ(value(*simulation, "desk/printer/lines/command.waiting"), 2);
   EXPECT_EQ(value(*simulation, "desk/printer/lines/command.count"), 3);
-  const auto restored = again(*simulation, with_kinds);
+  const auto restored = again(*simulation, with_call_kinds);
   EXPECT_EQ(restored->state_hash(), simulation->state_hash());
   for (const auto* sim : {&simulation, &restored}) {
     print(**sim, "e");
@@ -142,7 +142,7 @@ TEST(OrderQueue, HandsOverSeveralOrdersOfATickInTheirOrderAndRefusesTheRest) {
 
 TEST(OrderQueue, WorksWithDelayAndMaxRate) {
   const auto simulation = build(office({device("printer", "printer", map({{"delay", "20 ms"}}))}),
-                                with_kinds);
+                                with_call_kinds);
   for (const char* line : {"a", "b"}) print(*simulation, line);
   advance(*simulation, 2);
   EXPECT_EQ(paper(*simulation), "");
@@ -155,12 +155,12 @@ TEST(OrderQueue, WorksWithDelayAndMaxRate) {
 TEST(DeviceOrders, ReachTheOtherDeviceInTheSameTick) {
   const auto simulation = build(
       office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer")}),
-      with_kinds);
+      with_call_kinds);
   advance(*simulation, 3);
   EXPECT_EQ(paper(*simulation), "abc");
   ASSERT_EQ(simulation->devices("desk")[0].orders.size(), 1u);
   EXPECT_EQ(simulation->devices("desk")[0].orders[0]->slot(), "/desk/printer/lines/command");
-  const auto restored = again(*simulation, with_kinds);
+  const auto restored = again(*simulation, with_call_kinds);
   advance(*restored, 5);
   advance(*simulation, 5);
   EXPECT_EQ(restored->state_hash(), simulation->state_hash());
@@ -174,7 +174,7 @@ TEST(DeviceOrders, AreRefusedAndCountedAsOthers) {
   keys.set("failures", failures);
   const auto simulation = build(
       office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer", keys)}),
-      with_kinds);
+      with_call_kinds);
   advance(*simulation, 20);  // the ticks that begin at 50 ... 90 ms
   EXPECT_EQ(value(*simulation, "desk/author.refused"), 5);
   EXPECT_EQ(simulation->refused_commands(), 5u);
@@ -189,7 +189,7 @@ TEST(DeviceOrders, AreRefusedAndCountedAsOthers) {
 
   const auto slow = build(office({device("author", "author", map({{"printer", "printer"}})),
                                   device("printer", "printer", map({{"max_rate", "20"}}))}),
-                          with_kinds);
+                          with_call_kinds);
   advance(*slow, 20);
   EXPECT_EQ(paper(*slow), "abcd");
   EXPECT_EQ(value(*slow, "desk/printer.refused"), 16);
@@ -202,7 +202,7 @@ TEST(DeviceOrders, KnowNoLatestOneWhileTheOtherDeviceHasFailed) {
   keys.set("failures", failures);
   const auto simulation = build(
       office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer", keys)}),
-      with_kinds);
+      with_call_kinds);
   advance(*simulation, 3);
   const DeviceOrder& order = *simulation->devices("desk")[0].orders[0];
   EXPECT_NE(order.latest(Time::from_s(0.04)), nullptr);
@@ -222,7 +222,7 @@ TEST(DeviceOrders, AreCheckedWhenTheRobotIsComplete) {
       "/desk/printer/ink/command; name a device that does");
   const auto simulation = build(
       office({device("author", "author", map({{"printer", "printer"}})), device("printer", "printer")}),
-      with_kinds);
+      with_call_kinds);
   const auto status_of = [&](Request request) {
     simulation->submit(std::move(request));
     advance(*simulation, 1);
@@ -248,7 +248,7 @@ struct CallLog : Observer {
 };
 
 TEST(DeviceServices, AreCalledLoggedAndAnswered) {
-  const auto simulation = build(office({device("printer", "printer")}), with_kinds);
+  const auto simulation = build(office({device("printer", "printer")}), with_call_kinds);
   CallLog log;
   simulation->add_observer(&log);
   Trigger::Request nothing;
@@ -277,7 +277,7 @@ TEST(DeviceServices, AreCalledLoggedAndAnswered) {
   EXPECT_FALSE(outcomes[4].status) << "a request that is cut short";
 
   // The log repeats the run.
-  const auto repeated = build(office({device("printer", "printer")}), with_kinds);
+  const auto repeated = build(office({device("printer", "printer")}), with_call_kinds);
   for (std::uint64_t tick = 1; tick <= 2; ++tick) {
     for (const auto& [at, entry] : log.entries) {
       if (at != tick || entry.kind == LogEntry::command) continue;
@@ -294,7 +294,7 @@ TEST(DeviceServices, AreCalledLoggedAndAnswered) {
 }
 
 TEST(DeviceServices, OfADeadDeviceAnswerNothing) {
-  const auto simulation = build(office({device("printer", "printer")}), with_kinds);
+  const auto simulation = build(office({device("printer", "printer")}), with_call_kinds);
   simulation->submit(ParameterRequest{"desk/printer", "failure", Node::scalar("dead")});
   Trigger::Request nothing;
   std::vector<std::byte> bytes;

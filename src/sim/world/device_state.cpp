@@ -11,11 +11,13 @@ namespace {
 
 constexpr std::uint8_t is_requested = 1, has_late = 2;
 
-bool is_late(const SimulationParts::Slot& slot) { return slot.level == late_level; }
+bool has_late_level(const SimulationParts::Slot& slot) { return slot.level == late_level; }
 
 /// Whether a topic or command that is State from its first message on has had one.
 bool has_late_messages(const SimulationParts::Device& device) {
-  const auto had = [](const SimulationParts::Slot& slot) { return is_late(slot) && slot.topic->count > 0; };
+  const auto had = [](const SimulationParts::Slot& slot) {
+    return has_late_level(slot) && slot.topic->count > 0;
+  };
   return std::any_of(device.topics.begin(), device.topics.end(), had) ||
          std::any_of(device.commands.begin(), device.commands.end(), had);
 }
@@ -32,7 +34,7 @@ void DevicePools::save(const Device& device, ByteWriter& w) const {
   write(w, static_cast<std::uint8_t>((when.requested ? is_requested : 0) | (late ? has_late : 0)));
   for (const auto* const slots : {&device.topics, &device.commands})
     for (const Slot& slot : *slots)
-      if (late || !is_late(slot)) slot.topic->save(w);
+      if (late || !has_late_level(slot)) slot.topic->save(w);
   if (device.inbox()) device.inbox()->save(w);
   if (device.energy) write(w, device.energy->state);
   if (device.light()) device.light()->save(w);
@@ -68,9 +70,9 @@ void DevicePools::load(Device& device, ByteReader& r, Time now) {
       when.sample > most_samples)
     return r.fail();
   for (Slot& slot : device.topics)
-    if (late || !is_late(slot)) slot.topic->load(r);
+    if (late || !has_late_level(slot)) slot.topic->load(r);
   for (Slot& slot : device.commands) {
-    if (late || !is_late(slot)) slot.topic->load(r);
+    if (late || !has_late_level(slot)) slot.topic->load(r);
     // What assign() refuses does not come in by another door.
     if (r.ok() && !check_command(slot.topic->info(), slot.topic->data())) return r.fail();
   }

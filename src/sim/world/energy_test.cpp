@@ -238,13 +238,13 @@ struct Talker {
   }
 };
 const Kind talker_kind = make_kind<Talker>({.name = "talker", .help = "For tests."});
-const Kind* const own_kinds[] = {&talker_kind};
+const Kind* const energy_kinds[] = {&talker_kind};
 SimulationOptions with_talker(int threads = 1) {
-  return {.threads = threads, .run_programs = true, .extra_kinds = own_kinds};
+  return {.threads = threads, .run_programs = true, .extra_kinds = energy_kinds};
 }
 
 /// Rovers with lasers that drain, a talker, DC motors (rover2) or a drive (the others), and a charger.
-model::Setup busy(const char* engine) {
+model::Setup busy_rover(const char* engine) {
   model::Setup setup = arena(engine, 3);
   const bool rigid = std::string(engine) == "rigid";
   for (model::Instance& robot : setup.instances) {
@@ -296,7 +296,7 @@ void run(Simulation& simulation, std::uint64_t until) {
 
 TEST(Energy, ClosesWithDrainsMotorsDrivesAndUsersDevices) {
   for (const char* engine : {"planar", "rigid"}) {
-    const auto simulation = build(busy(engine), with_talker());
+    const auto simulation = build(busy_rover(engine), with_talker());
     run(*simulation, 600);
     for (const char* robot : {"rover1", "rover2", "rover3"})
       expect_closed(*simulation, robot, robot == std::string("rover1") ? 6 : 60);
@@ -310,10 +310,10 @@ TEST(Energy, ClosesWithDrainsMotorsDrivesAndUsersDevices) {
 
 TEST(Energy, GoesOnFromASnapshotInAnyNumberOfThreads) {
   for (const char* engine : {"planar", "rigid"}) {
-    const auto whole = build(busy(engine), with_talker());
+    const auto whole = build(busy_rover(engine), with_talker());
     run(*whole, 300);
     for (const std::uint64_t at : {67u, 151u, 240u}) {
-      const auto first = build(busy(engine), with_talker());
+      const auto first = build(busy_rover(engine), with_talker());
       run(*first, at);
       const std::vector<std::byte> snapshot = first->snapshot();
       for (const int threads : {1, 2, 4}) {

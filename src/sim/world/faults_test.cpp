@@ -18,7 +18,7 @@ using testing::HasSubstr;
 Node failure(const char* kind, const char* from, const char* until, const char* factor = "10") {
   return map({{"kind", kind}, {"from", from}, {"until", until}, {"factor", factor}});
 }
-Node list(std::initializer_list<Node> all) {
+Node fault_list(std::initializer_list<Node> all) {
   Node out = Node::sequence();
   for (const Node& each : all) out.push(each);
   return out;
@@ -26,7 +26,7 @@ Node list(std::initializer_list<Node> all) {
 
 /// Two rovers that stand still: their lasers (10 Hz, 1 cm of noise per beam) show another scan in every sample.
 model::Setup standing() { return arena("planar", 2, ""); }
-std::unique_ptr<Simulation> with(const char* name, const char* key, Node value) {
+std::unique_ptr<Simulation> world_with(const char* name, const char* key, Node value) {
   model::Setup setup = standing();
   device_of(setup, "rover1", name).config.set(key, std::move(value));
   return build(std::move(setup));
@@ -37,8 +37,8 @@ const Topic<msg::LaserScan>& laser(const Simulation& simulation, const char* nam
 
 TEST(Faults, StuckRepeatsDeadIsSilentAndAfterwardsAllIsAsWithout) {
   const auto whole = build(standing());
-  const auto failing = with("laser", "failures",
-                            list({failure("stuck", "1 s", "2 s"), failure("dead", "3 s", "4 s")}));
+  const auto failing = world_with(
+      "laser", "failures", fault_list({failure("stuck", "1 s", "2 s"), failure("dead", "3 s", "4 s")}));
   std::vector<float> last;
   for (int tick = 1; tick <= 500; ++tick) {
     advance(*whole, 1);
@@ -70,7 +70,7 @@ TEST(Faults, StuckRepeatsDeadIsSilentAndAfterwardsAllIsAsWithout) {
 }
 
 TEST(Faults, AStuckDeviceWithoutAMessageBeforeHasNothingToRepeat) {
-  const auto simulation = with("laser", "failures", list({failure("stuck", "0", "1 s")}));
+  const auto simulation = world_with("laser", "failures", fault_list({failure("stuck", "0", "1 s")}));
   advance(*simulation, 99);
   EXPECT_EQ(laser(*simulation).count, 0u);
   advance(*simulation, 1);
@@ -79,7 +79,7 @@ TEST(Faults, AStuckDeviceWithoutAMessageBeforeHasNothingToRepeat) {
 
 TEST(Faults, AStuckDeviceRepeatsOnlyWhatItWouldHavePublished) {
   model::Setup setup = standing();
-  device_of(setup, "rover1", "laser").config.set("failures", list({failure("stuck", "1 s", "3 s")}));
+  device_of(setup, "rover1", "laser").config.set("failures", fault_list({failure("stuck", "1 s", "3 s")}));
   const auto simulation = build(std::move(setup));
   const auto count = [&](const char* topic) { return simulation->find_topic(topic)->count; };
   simulation->submit(LevelRequest{"rover1/laser", {"ranges", "pose"}});
@@ -96,7 +96,7 @@ TEST(Faults, AStuckDeviceRepeatsOnlyWhatItWouldHavePublished) {
 TEST(Faults, AnOrderBeginsAndEndsThemInTheRunAndTheLogRepeatsIt) {
   const auto make = [] {
     model::Setup setup = standing();
-    device_of(setup, "rover2", "laser").config.set("failures", list({failure("dead", "1 s", "9 s")}));
+    device_of(setup, "rover2", "laser").config.set("failures", fault_list({failure("dead", "1 s", "9 s")}));
     return build(std::move(setup));
   };
   TickLog live, repeated;
@@ -172,11 +172,11 @@ TEST(Faults, OrdersThatCannotBeAreRefused) {
 }
 
 TEST(Faults, ANoisyDeviceErrsMoreByItsFactor) {
-  const auto exact = with("laser", "errors", Node::scalar("0"));
+  const auto exact = world_with("laser", "errors", Node::scalar("0"));
   const auto whole = build(standing());
-  const auto failing = with(
+  const auto failing = world_with(
       "laser", "failures",
-      list({failure("noisy", "0.5 s", "2 s", "4"), failure("noisy", "1 s", "3 s", "0.5")}));
+      fault_list({failure("noisy", "0.5 s", "2 s", "4"), failure("noisy", "1 s", "3 s", "0.5")}));
   for (const auto& [ticks, factor] : {std::pair(40, 1.0), {40, 4.0}, {70, 2.0}, {100, 0.5}, {100, 1.0}}) {
     for (Simulation* each : {exact.get(), whole.get(), failing.get()}) advance(*each, ticks);
     const auto &truth = laser(*exact).message.ranges, &once = laser(*whole).message.ranges,
@@ -197,7 +197,7 @@ TEST(Faults, AFailedDriveTakesNoCommandsAndAStuckOneGoesOn) {
   for (const char* engine : {"planar", "rigid"})
     for (const char* kind : {"stuck", "dead"}) {
       model::Setup setup = arena(engine, 1, "");
-      device_of(setup, "rover1", "drive").config.set("failures", list({failure(kind, "1 s", "2 s")}));
+      device_of(setup, "rover1", "drive").config.set("failures", fault_list({failure(kind, "1 s", "2 s")}));
       const auto simulation = build(std::move(setup));
       const auto order = [&](double v_mps) {
         msg::Twist twist;
@@ -230,7 +230,7 @@ TEST(Faults, AFailedDriveTakesNoCommandsAndAStuckOneGoesOn) {
 
 TEST(Faults, AWrongClockShowsInHeadersAlone) {
   Node clock = map({{"offset", "20 ms"}, {"drift", "0.001"}});
-  const auto simulation = with("laser", "clock", clock);
+  const auto simulation = world_with("laser", "clock", clock);
   advance(*simulation, 300);
   const auto& scan = laser(*simulation);
   EXPECT_NEAR(scan.stamp.s(), 3, 1e-9);
@@ -241,7 +241,7 @@ TEST(Faults, AWrongClockShowsInHeadersAlone) {
   EXPECT_EQ(laser(*simulation, "rover2/laser").message.header.stamp,
             laser(*simulation, "rover2/laser").stamp);
 
-  const auto jittery = with("truth", "clock", map({{"jitter", "2 ms"}}));
+  const auto jittery = world_with("truth", "clock", map({{"jitter", "2 ms"}}));
   const auto& truth = *topic_cast<msg::Odometry>(jittery->find_topic("rover1/truth"));
   double squares = 0;
   constexpr int n = 400;  // 20 per second
@@ -256,8 +256,8 @@ TEST(Faults, AWrongClockShowsInHeadersAlone) {
 TEST(Faults, SnapshotsMayBeTakenInTheMiddleOfOne) {
   model::Setup setup = standing();
   device_of(setup, "rover1", "laser")
-      .config.set("failures", list({failure("stuck", "1 s", "2 s"), failure("noisy", "2.5 s", "4 s")}));
-  device_of(setup, "rover1", "truth").config.set("failures", list({failure("dead", "1 s", "3 s")}));
+      .config.set("failures", fault_list({failure("stuck", "1 s", "2 s"), failure("noisy", "2.5 s", "4 s")}));
+  device_of(setup, "rover1", "truth").config.set("failures", fault_list({failure("dead", "1 s", "3 s")}));
   device_of(setup, "rover2", "laser").config.set("clock", map({{"jitter", "2 ms"}}));
   setup.instances.back().errors = 1.5;
   setup.errors = 2;
@@ -274,7 +274,7 @@ TEST(Faults, SnapshotsMayBeTakenInTheMiddleOfOne) {
 }
 
 TEST(Errors, FactorsOfWorldRobotAndDeviceMultiplyWhileTheRunGoesOn) {
-  const auto exact = with("laser", "errors", Node::scalar("0"));
+  const auto exact = world_with("laser", "errors", Node::scalar("0"));
   const auto once = build(standing());
   const auto tuned = build(standing());
   const auto set = [&](const char* target, const char* to) {
@@ -337,15 +337,15 @@ TEST(Faults, BadOnesAreRefused) {
     const auto made = Simulation::create(std::move(setup), {}, diagnostics);
     return made ? std::string() : made.error().text();
   };
-  EXPECT_EQ(error_of("laser", "failures", list({failure("dead", "1 s", "2 s")})), "");
-  EXPECT_THAT(error_of("laser", "failures", list({failure("ded", "1 s", "2 s")})),
+  EXPECT_EQ(error_of("laser", "failures", fault_list({failure("dead", "1 s", "2 s")})), "");
+  EXPECT_THAT(error_of("laser", "failures", fault_list({failure("ded", "1 s", "2 s")})),
               HasSubstr("/failures/0/kind"));
-  EXPECT_THAT(error_of("laser", "failures", list({failure("dead", "2 s", "1 s")})),
+  EXPECT_THAT(error_of("laser", "failures", fault_list({failure("dead", "2 s", "1 s")})),
               HasSubstr("until is not later"));
-  EXPECT_THAT(error_of("laser", "failures", list({failure("noisy", "1 s", "2 s", "-3")})),
+  EXPECT_THAT(error_of("laser", "failures", fault_list({failure("noisy", "1 s", "2 s", "-3")})),
               HasSubstr("/failures/0/factor"));
   EXPECT_THAT(error_of("laser", "failures", Node::scalar("dead")), HasSubstr("/failures"));
-  EXPECT_THAT(error_of("drive", "failures", list({failure("noisy", "1 s", "2 s")})),
+  EXPECT_THAT(error_of("drive", "failures", fault_list({failure("noisy", "1 s", "2 s")})),
               HasSubstr("diff_drive has no errors"));
   EXPECT_THAT(error_of("laser", "clock", map({{"drift", "2"}})), HasSubstr("/clock/drift"));
   EXPECT_THAT(error_of("laser", "clock", map({{"ofset", "2"}})), HasSubstr("offset"));

@@ -14,34 +14,35 @@
 namespace sandlot::test {
 namespace {
 
-Node list(std::initializer_list<Node> items) {
+Node node_list(std::initializer_list<Node> items) {
   Node out = Node::sequence();
   for (const Node& item : items) out.push(item);
   return out;
 }
-Node numbers(std::initializer_list<double> values) {
+Node number_list(std::initializer_list<double> values) {
   Node out = Node::sequence();
   for (const double value : values) out.push(Node::scalar(std::to_string(value)));
   return out;
 }
-Node with(Node node, const char* key, const Node& value) {
+Node with_key(Node node, const char* key, const Node& value) {
   node.set(key, value);
   return node;
 }
-model::ElementDecl element(const char* kind, Node config, const char* name = nullptr) {
+model::ElementDecl marker_element(const char* kind, Node config, const char* name = nullptr) {
   return {name ? name : kind, kind, std::move(config), {}};
 }
 model::ElementDecl disc(const char* name, double x, double y, const char* radius) {
-  return element("disc", with(map({{"radius", radius}}), "centre", numbers({x, y})), name);
+  return marker_element("disc", with_key(map({{"radius", radius}}), "centre", number_list({x, y})), name);
 }
 model::ElementDecl line(Node points, std::initializer_list<std::pair<const char*, std::string>> keys) {
-  return element("line", with(map(keys), "points", points));
+  return marker_element("line", with_key(map(keys), "points", points));
 }
 model::ElementDecl grid(std::initializer_list<std::pair<const char*, std::string>> keys) {
-  return element("grid", with(with(map(keys), "size", numbers({1, 0.5})), "corner", numbers({2, 1})));
+  return marker_element(
+      "grid", with_key(with_key(map(keys), "size", number_list({1, 0.5})), "corner", number_list({2, 1})));
 }
 
-std::string refused(model::Setup setup) {
+std::string why_refused(model::Setup setup) {
   Diagnostics diagnostics;
   const auto made = Simulation::create(std::move(setup), {}, diagnostics);
   return made ? "" : made.error().text();
@@ -167,7 +168,7 @@ const Marker& marker(const Simulation& simulation, const char* name) {
 TEST(LineMarker, HoldsWhatIsWithinHalfOfItsWidth) {
   model::Setup setup = boxes();
   setup.markers.push_back(
-      line(list({numbers({0, 0}), numbers({2, 0}), numbers({2, 1})}), {{"width", "0.2"}}));
+      line(node_list({number_list({0, 0}), number_list({2, 0}), number_list({2, 1})}), {{"width", "0.2"}}));
   const auto simulation = build(setup);
   const Marker& l = marker(*simulation, "line");
   for (const Vec3 in :
@@ -180,7 +181,8 @@ TEST(LineMarker, HoldsWhatIsWithinHalfOfItsWidth) {
 
 TEST(LineMarker, ClosesAndMayCrossItself) {
   model::Setup setup = boxes();
-  const Node eight = list({numbers({0, 0}), numbers({2, 2}), numbers({2, 0}), numbers({0, 2})});
+  const Node eight = node_list(
+      {number_list({0, 0}), number_list({2, 2}), number_list({2, 0}), number_list({0, 2})});
   setup.markers.push_back(line(eight, {{"width", "0.2"}, {"closed", "true"}}));
   const auto simulation = build(setup);
   const Marker& l = marker(*simulation, "line");
@@ -206,8 +208,8 @@ TEST(GridMarker, HoldsItsBars) {
 /// where a point of it does.
 TEST(Markers, AreTheUnionOfTheirOutlines) {
   model::Setup setup = boxes();
-  setup.markers.push_back(
-      line(list({numbers({1, 1}), numbers({2, 1.2}), numbers({1.2, 1.6})}), {{"width", "0.15"}}));
+  setup.markers.push_back(line(
+      node_list({number_list({1, 1}), number_list({2, 1.2}), number_list({1.2, 1.6})}), {{"width", "0.15"}}));
   setup.markers.push_back(grid({{"spacing", "0.2"}, {"width", "0.05"}, {"yaw", "0.4"}}));
   const auto simulation = build(setup);
   Stream random(1, 2, Purpose::noise, 3);
@@ -243,22 +245,23 @@ TEST(Markers, BadOnesAreRefusedByWhatIsWrong) {
   const auto error = [](model::ElementDecl decl) {
     model::Setup setup = boxes();
     setup.markers.push_back(std::move(decl));
-    return refused(std::move(setup));
+    return why_refused(std::move(setup));
   };
   const auto has = [](const std::string& text, const char* words) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
   };
-  const Node two = list({numbers({0, 0}), numbers({1, 0})});
-  has(error(line(list({numbers({0, 0})}), {})), "points");
-  has(error(line(list({numbers({0, 0}), numbers({0, 0})}), {})), "points 1 and 2 are equal");
-  has(error(line(list({numbers({0, 0}), numbers({1, 0}), numbers({1, 1}), numbers({0, 0})}),
-                 {{"closed", "true"}})),
+  const Node two = node_list({number_list({0, 0}), number_list({1, 0})});
+  has(error(line(node_list({number_list({0, 0})}), {})), "points");
+  has(error(line(node_list({number_list({0, 0}), number_list({0, 0})}), {})), "points 1 and 2 are equal");
+  has(error(line(
+          node_list({number_list({0, 0}), number_list({1, 0}), number_list({1, 1}), number_list({0, 0})}),
+          {{"closed", "true"}})),
       "points 4 and 1 are equal; leave the last one out");
   has(error(line(two, {{"closed", "true"}})), "a closed line needs three points");
   has(error(line(two, {{"width", "0"}})), "width");
   has(error(line(two, {{"width", "-1"}})), "width");
   Node many = Node::sequence();
-  for (int i = 0; i <= 1000; ++i) many.push(numbers({0.1 * i, 0}));
+  for (int i = 0; i <= 1000; ++i) many.push(number_list({0.1 * i, 0}));
   has(error(line(many, {})), "1000");
   has(error(grid({{"spacing", "0.1"}, {"width", "0.1"}})), "as wide as their spacing");
   has(error(grid({{"spacing", "0.001"}, {"width", "0.0005"}})), "more than 500 lines");
@@ -269,8 +272,8 @@ TEST(Markers, BadOnesAreRefusedByWhatIsWrong) {
 
 model::Setup zoned(const char* stop_when = "never", const char* objects = "box*") {
   model::Setup setup = boxes();
-  setup.rules.push_back(element("zone", with(map({{"marker", "goal"}, {"stop_when", stop_when}}), "objects",
-                                             list({Node::scalar(objects)}))));
+  setup.rules.push_back(marker_element("zone", with_key(map({{"marker", "goal"}, {"stop_when", stop_when}}),
+                                                        "objects", node_list({Node::scalar(objects)}))));
   return setup;
 }
 
@@ -322,10 +325,10 @@ TEST(Zone, WithOverlapsAPartIsEnough) {
 }
 
 TEST(Zone, NamesThatAreNotThereAreRefused) {
-  EXPECT_NE(refused(zoned("never", "bax1")).find("did you mean 'box1'?"), std::string::npos);
+  EXPECT_NE(why_refused(zoned("never", "bax1")).find("did you mean 'box1'?"), std::string::npos);
   model::Setup setup = zoned();
   setup.rules.front().config.set("marker", Node::scalar("gaol"));
-  EXPECT_NE(refused(setup).find("did you mean 'goal'?"), std::string::npos);
+  EXPECT_NE(why_refused(setup).find("did you mean 'goal'?"), std::string::npos);
 }
 
 TEST(Zone, GoesOnFromASnapshotAndRefusesForgedState) {

@@ -23,7 +23,7 @@ constexpr std::size_t most_in_batch = 16;
 
 /// Programs lie all over the memory. This fetches what a batch of them needs at once, as far as pointers lead, so that in a
 /// large swarm the machine waits once per batch and not once per pointer.
-void prefetch(std::span<SimulationParts::ProgramEntry* const> programs) {
+void prefetch_programs(std::span<SimulationParts::ProgramEntry* const> programs) {
   for (const SimulationParts::ProgramEntry* const entry : programs) {
     const auto* const end = reinterpret_cast<const std::byte*>(&entry->routes);
     for (const auto* at = reinterpret_cast<const std::byte*>(&entry->key); at < end; at += cache_line)
@@ -166,7 +166,7 @@ std::optional<Error> Programs::step(Entities entities, Time now, bool control_st
   parallel_for(due.size(), 64, [&](std::size_t begin, std::size_t end) {
     while (begin < end) {
       const auto batch = due.subspan(begin, std::min(most_in_batch, end - begin));
-      prefetch(batch);
+      prefetch_programs(batch);
       std::size_t count = 1;
       while (count < batch.size() && batch[count]->kind == batch.front()->kind) ++count;
       if (step_batch(batch.first(count), now)) news = true;

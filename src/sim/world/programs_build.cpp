@@ -19,23 +19,23 @@ namespace {
 using Entry = Description::Entry;
 
 /// Name of a topic relative to its device's path: "right/image".
-std::string_view part_of(const SimulationParts::Device& device, const TopicBase& topic) {
+std::string_view own_part_of(const SimulationParts::Device& device, const TopicBase& topic) {
   return std::string_view(topic.name()).substr(device.path.size() + 2);
 }
 
-bool same(const Entry& a, const Entry& b) {
+bool same_entries(const Entry& a, const Entry& b) {
   return a.device == b.device && a.level == b.level && a.type == b.type && a.program == b.program;
 }
 
 bool all_same(const std::vector<Entry>& a, const std::vector<Entry>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Entry& x, const Entry& y) { return same(x, y) && x.X_BS == y.X_BS; });
+                    [](const Entry& x, const Entry& y) { return same_entries(x, y) && x.X_BS == y.X_BS; });
 }
 
 /// Index of the same entry in another description.
 std::optional<std::uint32_t> index_in(const std::vector<Entry>& entries, const Entry& wanted) {
   for (const Entry& entry : entries)
-    if (same(entry, wanted)) return entry.index;
+    if (same_entries(entry, wanted)) return entry.index;
   return std::nullopt;
 }
 
@@ -264,7 +264,7 @@ void Programs::describe_robot(const Entity& entity, const ProgramEntries& progra
         const auto alike = std::count_if(slots.begin(), slots.end(), [&](const SimulationParts::Slot& other) {
           return other.level == slot.level && std::string_view(other.topic->type()) == slot.topic->type();
         });
-        if (alike > 1) add(std::string(part_of(*device, *slot.topic)), *slot.topic);
+        if (alike > 1) add(std::string(own_part_of(*device, *slot.topic)), *slot.topic);
       }
     };
     describe(device->topics, out.readings);
@@ -379,7 +379,7 @@ void Programs::follow(ProgramEntry& program, const Driven& driven, const Program
         for (const SimulationParts::Slot& slot : device->topics) {
           if (entry.type != slot.topic->type()) continue;
           const bool always = slot.level >= levels.size();
-          const bool named = entry.level == part_of(*device, *slot.topic);
+          const bool named = entry.level == own_part_of(*device, *slot.topic);
           if (!entry.level.empty() && !named && (always || entry.level != levels[slot.level].name)) continue;
           if (!first) first = slot.topic.get();
           if (!chosen && (always || (device->levels >> slot.level & 1))) chosen = slot.topic.get();

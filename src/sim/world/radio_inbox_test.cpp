@@ -8,7 +8,7 @@ namespace {
 
 std::string word(int number) { return "packet " + std::to_string(number) + std::string(number % 40, '!'); }
 
-void say(Radios& world, int from, int to) {
+void send_word(Radios& world, int from, int to) {
   for (int i = from; i < to; ++i) {
     const std::string data = word(i);
     world.send("sender", {data.begin(), data.end()});
@@ -28,10 +28,10 @@ Radios pair() {
 TEST(Radio, PacketsThatWaitForTheNextSampleKeepTheirContent) {
   Radios world = pair();
   world.start();
-  say(world, 0, 19);
+  send_word(world, 0, 19);
   EXPECT_EQ(world.received("slow").size(), 0u) << "the sample before was at 0";
   EXPECT_EQ(world.received("quick").size(), 1u);
-  say(world, 19, 20);
+  send_word(world, 19, 20);
   const auto packets = world.received("slow");
   ASSERT_EQ(packets.size(), 20u);
   for (int i = 0; i < 20; ++i) {
@@ -41,14 +41,14 @@ TEST(Radio, PacketsThatWaitForTheNextSampleKeepTheirContent) {
   // From the middle of it, from a snapshot.
   Radios first = pair();
   first.start();
-  say(first, 0, 9);
+  send_word(first, 0, 9);
   Diagnostics diagnostics;
   auto restored = Simulation::restore(first.simulation->snapshot(), {}, diagnostics);
   ASSERT_TRUE(restored) << restored.error().text();
   EXPECT_EQ((*restored)->state_hash(), first.simulation->state_hash());
   Radios second = pair();
   second.simulation = std::move(*restored);
-  say(second, 9, 20);
+  send_word(second, 9, 20);
   EXPECT_EQ(second.simulation->state_hash(), world.simulation->state_hash());
 }
 

@@ -17,14 +17,14 @@ double decibels(double ratio) { return 10 / std::numbers::ln10 * math::log(ratio
 std::vector<std::uint8_t> text(std::string_view words) { return {words.begin(), words.end()}; }
 std::string text(const std::vector<std::uint8_t>& data) { return {data.begin(), data.end()}; }
 
-std::string refused(const Radios& world) {
+std::string refused_radio(const Radios& world) {
   Diagnostics diagnostics;
   const auto made = Simulation::create(world.setup, {}, diagnostics);
   return made ? "" : made.error().text();
 }
 
 /// A sender at the origin and a receiver on the x axis.
-Radios pair(Node medium, double distance_m = 10, double step_s = 0.01) {
+Radios radio_pair(Node medium, double distance_m = 10, double step_s = 0.01) {
   Radios world(std::move(medium), step_s);
   world.add("sender", {});
   world.add("receiver", {distance_m, 0, 0});
@@ -35,7 +35,7 @@ Radios pair(Node medium, double distance_m = 10, double step_s = 0.01) {
 
 TEST(Radio, APacketArrivesWithItsLastBitAfterFlightAndDelay) {
   // 128 + 8 * 5 bits at 10 kbit/s are 16.8 ms, 300 m at 1e5 m/s are 3 ms, and 1 ms of delay: 20.8 ms, in the third tick.
-  Radios world = pair(
+  Radios world = radio_pair(
       keys_of(
           {{"bandwidth", "10e3"}, {"speed", "1e5"}, {"delay", "1 ms"}, {"jitter", "0"}, {"range", "300"}}),
       300);
@@ -55,7 +55,7 @@ TEST(Radio, APacketArrivesWithItsLastBitAfterFlightAndDelay) {
   world.tick();
   EXPECT_TRUE(world.received("receiver").empty()) << "received once";
   // One metre farther there is nothing.
-  Radios far = pair(keys_of({{"range", "300"}}), 300.001);
+  Radios far = radio_pair(keys_of({{"range", "300"}}), 300.001);
   far.start();
   far.send("sender", text("hello"));
   far.tick(5);
@@ -64,7 +64,7 @@ TEST(Radio, APacketArrivesWithItsLastBitAfterFlightAndDelay) {
 
 TEST(Radio, PacketsOfARadioFollowOneAnotherAndTheQueueIsBounded) {
   // 128 + 8 bits at 13.6 kbit/s: 10 ms each, in ticks of 10 ms.
-  Radios world = pair(keys_of({{"bandwidth", "13600"}, {"jitter", "0"}, {"queue", "3"}}));
+  Radios world = radio_pair(keys_of({{"bandwidth", "13600"}, {"jitter", "0"}, {"queue", "3"}}));
   world.start();
   for (int i = 0; i < 5; ++i) world.send("sender", {static_cast<std::uint8_t>('a' + i)});
   std::string came;
@@ -84,7 +84,7 @@ TEST(Radio, PacketsOfARadioFollowOneAnotherAndTheQueueIsBounded) {
 }
 
 TEST(Radio, StartsLieAnywhereInTheTickThatTakesTheOrder) {
-  Radios world = pair(keys_of({{"bandwidth", "1e9"}}));
+  Radios world = radio_pair(keys_of({{"bandwidth", "1e9"}}));
   world.start();
   constexpr int packets = 2000;
   double sum = 0, squares = 0;
@@ -113,11 +113,11 @@ TEST(Radio, StartsLieAnywhereInTheTickThatTakesTheOrder) {
 
 TEST(Radio, PowerFollowsTheLogarithmOfTheDistance) {
   for (const double d : {0.3, 1.0, 10.0, 50.0}) {
-    Radios world = pair(keys_of({{"model", "log_distance"},
-                                 {"exponent", "3"},
-                                 {"reference_loss", "41"},
-                                 {"sensitivity", "-72.1"}}),
-                        d);
+    Radios world = radio_pair(keys_of({{"model", "log_distance"},
+                                       {"exponent", "3"},
+                                       {"reference_loss", "41"},
+                                       {"sensitivity", "-72.1"}}),
+                              d);
     world.start();
     world.send("sender", text("x"));
     world.tick(2);
@@ -127,7 +127,7 @@ TEST(Radio, PowerFollowsTheLogarithmOfTheDistance) {
         world.simulation->find_topic("/receiver/radio/packets"));
     EXPECT_NEAR(topic->message.packets.at(0).rssi, 20 - 41 - 3 * decibels(std::max(1.0, d)), 1e-9);
   }
-  Radios weak = pair(
+  Radios weak = radio_pair(
       keys_of(
           {{"model", "log_distance"}, {"exponent", "3"}, {"reference_loss", "41"}, {"sensitivity", "-72.1"}}),
       51);
@@ -164,7 +164,7 @@ TEST(Radio, EachBodyInTheLineLosesByItsLabelOrSubstance) {
   losses.push(keys_of({{"of", "metal"}, {"loss", "30 dB"}}));
   losses.push(keys_of({{"of", "hedge"}, {"loss", "2"}}));
   medium.set("obstacles", losses);
-  Radios world = pair(medium);
+  Radios world = radio_pair(medium);
   const Box wall{{0.1, 4, 4}};
   world.add_thing("plain", wall, {2, 0, 0});
   world.add_thing("cabinet", wall, {4, 0, 0}, model::substance_from("metal(0.5)").value().substance);
@@ -252,7 +252,7 @@ TEST(Radio, ChannelsAreApartAndMayBeTuned) {
 
 TEST(Radio, ARadioThatSendsIsDeafUnlessItIsFullDuplex) {
   for (const bool half : {true, false}) {
-    Radios world = pair(keys_of({{"half_duplex", half ? "true" : "false"}, {"jitter", "0"}}));
+    Radios world = radio_pair(keys_of({{"half_duplex", half ? "true" : "false"}, {"jitter", "0"}}));
     world.start();
     world.send("sender", text("ping"));
     world.send("receiver", text("pong"));
@@ -310,7 +310,7 @@ TEST(Radio, PacketsAreForARobotATeamAnAddressOrAll) {
 }
 
 TEST(Radio, AMessageOverTheLimitIsRefusedAndCounted) {
-  Radios world = pair(Node::map());
+  Radios world = radio_pair(Node::map());
   world.setup.instances[0].devices.edit().front().config = keys_of({{"max_size", "4"}});
   world.start();
   world.send("sender", text("12345"));
@@ -322,7 +322,7 @@ TEST(Radio, AMessageOverTheLimitIsRefusedAndCounted) {
 }
 
 TEST(Radio, WithoutARateASampleIsTakenWhenSomethingCame) {
-  Radios world = pair(Node::map());
+  Radios world = radio_pair(Node::map());
   world.add("slow", {1, 0, 0}, keys_of({{"rate", "10"}}));
   world.start();
   const auto count = [&](const char* topic) { return world.simulation->find_topic(topic)->count; };
@@ -559,14 +559,15 @@ TEST(Radio, RadiosThatGoAreForgottenWithTheirPackets) {
 }
 
 TEST(Radio, WrongKeysAreNamed) {
-  EXPECT_NE(refused(pair(keys_of({{"bandwidth", "0"}}))).find("/bandwidth"), std::string::npos);
+  EXPECT_NE(refused_radio(radio_pair(keys_of({{"bandwidth", "0"}}))).find("/bandwidth"), std::string::npos);
   Node csma = keys_of({{"min_exponent", "6"}});
   Node keys = Node::map();
   keys.set("csma", csma);
-  EXPECT_NE(refused(pair(keys)).find("max_exponent is less than min_exponent"), std::string::npos);
-  Radios none = pair(Node::map());
+  EXPECT_NE(refused_radio(radio_pair(keys)).find("max_exponent is less than min_exponent"),
+            std::string::npos);
+  Radios none = radio_pair(Node::map());
   none.setup.media.clear();
-  EXPECT_NE(refused(none).find("media: [{kind: radio}]"), std::string::npos) << refused(none);
+  EXPECT_NE(refused_radio(none).find("media: [{kind: radio}]"), std::string::npos) << refused_radio(none);
 }
 
 TEST(Packet, ItsBytesGiveItBackAndOthersAreRefused) {

@@ -132,7 +132,7 @@ TEST(RefereeFiles, GoOnTheSameFromASnapshotInAnyNumberOfThreads) {
   }
 }
 
-void say(Simulation& simulation, const std::string& word, const std::string& team = "", int robot = 0) {
+void say_word(Simulation& simulation, const std::string& word, const std::string& team = "", int robot = 0) {
   msg::RefereeCommand command;
   command.command = word;
   command.team = team;
@@ -152,8 +152,8 @@ TEST(RefereeRule, AWordOfAPersonReachesTheGameAndTheRobots) {
   };
   step(100);
   log.text.clear();
-  say(*simulation, "STOP");
-  say(*simulation, "RED_CARD", "cyan", 2);
+  say_word(*simulation, "STOP");
+  say_word(*simulation, "RED_CARD", "cyan", 2);
   step(1);
   ASSERT_EQ(simulation->outcomes().size(), 2u);
   EXPECT_TRUE(simulation->outcomes()[0].status) << simulation->outcomes()[0].status.error().text();

@@ -51,7 +51,7 @@ TEST(Wind, ActsOnTheAreaThatItSees) {
 // ----------------------------------------------------------------------------------------------------------- shout
 
 /// Loss of level over a distance.
-double decibels(double distance_m) { return 20 * math::log(distance_m) / math::log(10); }
+double decibels_at(double distance_m) { return 20 * math::log(distance_m) / math::log(10); }
 
 const msg::HeardArray& heard(const Simulation& simulation, const char* topic = "listener1/ear") {
   const auto* const found = topic_cast<msg::HeardArray>(simulation.find_topic(topic));
@@ -72,7 +72,7 @@ TEST(Shout, AWordArrivesWithTheDelayLevelAndDirectionOfItsWay) {
   const msg::Heard& word = heard(*simulation).words.front();
   EXPECT_EQ(word.text, "hello");
   EXPECT_NEAR(word.stamp.s(), 10.0 / 340, 1e-9);
-  EXPECT_NEAR(word.level, 70 - decibels(10.0), 1e-9);
+  EXPECT_NEAR(word.level, 70 - decibels_at(10.0), 1e-9);
   // The speaker lies along -x of the world; the listener looks along y.
   EXPECT_NEAR(word.direction.x, 0, 1e-12);
   EXPECT_NEAR(word.direction.y, 1, 1e-12);
@@ -97,7 +97,7 @@ TEST(Shout, WallsWeakenAndFarEarsHearNothing) {
       for (const msg::Heard& word : heard(*simulation, "listener2/ear").words) far = word.level;
       for (const msg::Heard& word : heard(*simulation, "listener3/ear").words) too_far = word.level;
     }
-    EXPECT_NEAR(level, 70 - decibels(3.0) - (wall ? 15 : 0), 1e-9);
+    EXPECT_NEAR(level, 70 - decibels_at(3.0) - (wall ? 15 : 0), 1e-9);
     // The nearer listeners stand in the way of those behind them.
     EXPECT_EQ(far, 0);
     EXPECT_EQ(too_far, 0);

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::string joined(std::span<const std::string> words, const char* between = ", ") {
+std::string all_words(std::span<const std::string> words, const char* between = ", ") {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
   return out;
@@ -22,7 +22,7 @@ std::string joined(std::span<const std::string> words, const char* between = ", 
 std::string short_number(double x) { return fmt::format("{:.6g}", x); }
 
 std::string limits(const FieldInfo& field) {
-  if (!field.choices.empty()) return joined(field.choices);
+  if (!field.choices.empty()) return all_words(field.choices);
   if (field.type != "number" && field.type != "integer" && field.type != "list of number") return "";
   if (field.min <= -1e12 && field.max >= 1e12) return "";
   return short_number(field.min) + " .. " + short_number(field.max);

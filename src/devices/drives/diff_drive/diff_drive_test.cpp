@@ -347,7 +347,7 @@ TEST(DiffDrive, StateSurvivesSaving) {
   EXPECT_EQ(odometry(a, "contact").pose.pose, odometry(b, "contact").pose.pose);
 }
 
-Result<Spec> spec_of(const Node& plugin, Diagnostics& diagnostics) {
+Result<Spec> read_drive_spec(const Node& plugin, Diagnostics& diagnostics) {
   SL_ASSIGN(const Node node, kind.from_sdf(plugin, diagnostics));
   return read_spec<Spec>(node);
 }
@@ -366,7 +366,7 @@ TEST(DiffDriveFromSdf, TakesTheElementsOfGazebosPlugin) {
   left.push(Node::scalar("front"));
   left.push(Node::scalar("rear"));
   Diagnostics diagnostics;
-  const auto spec = spec_of(plugin, diagnostics);
+  const auto spec = read_drive_spec(plugin, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(spec->left_joint, (std::vector<std::string>{"front", "rear"}));
   EXPECT_EQ(spec->right_joint, std::vector<std::string>{"right"});
@@ -384,38 +384,40 @@ TEST(DiffDriveFromSdf, TakesTheElementsOfGazebosPlugin) {
 
 TEST(DiffDriveFromSdf, TakesTheSpellingsOfGazeboClassic) {
   Diagnostics diagnostics;
-  const auto spec = spec_of(config({{"leftJoint", "l"},
-                                    {"rightJoint", "r"},
-                                    {"wheelDiameter", "0.2"},
-                                    {"wheelSeparation", "0.3"},
-                                    {"wheelTorque", "7"},
-                                    {"updateRate", "20"}}),
-                            diagnostics);
+  const auto spec = read_drive_spec(config({{"leftJoint", "l"},
+                                            {"rightJoint", "r"},
+                                            {"wheelDiameter", "0.2"},
+                                            {"wheelSeparation", "0.3"},
+                                            {"wheelTorque", "7"},
+                                            {"updateRate", "20"}}),
+                                    diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(spec->wheel_radius_m, 0.1);
   EXPECT_EQ(spec->max_wheel_effort_Nm, 7);
   EXPECT_EQ(spec->rate_hz, 20);
   EXPECT_TRUE(diagnostics.warnings.empty());
   // DiffDrivePlugin gives joints and torque alone: the geometry comes from the model.
-  const auto bare = spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"torque", "20"}}),
-                            diagnostics);
+  const auto bare = read_drive_spec(config({{"left_joint", "l"}, {"right_joint", "r"}, {"torque", "20"}}),
+                                    diagnostics);
   ASSERT_TRUE(bare);
   EXPECT_FALSE(bare->wheel_radius_m || bare->wheel_separation_m);
 }
 
 TEST(DiffDriveFromSdf, UnevenLimitsAreWarnedOfAndNonsenseIsAnError) {
   Diagnostics diagnostics;
-  const auto spec = spec_of(
+  const auto spec = read_drive_spec(
       config({{"left_joint", "l"}, {"right_joint", "r"}, {"max_velocity", "0.5"}, {"min_velocity", "-1"}}),
       diagnostics);
   ASSERT_TRUE(spec);
   EXPECT_EQ(spec->max_linear_speed_mps, 1);
   EXPECT_EQ(diagnostics.warnings.size(), 2u);  // linear and angular
-  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "big"}}), diagnostics)
+  EXPECT_EQ(read_drive_spec(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "big"}}),
+                            diagnostics)
                 .error()
                 .text(),
             "robot.yaml:3:9: <wheel_radius> is 'big'; write a number");
-  EXPECT_EQ(spec_of(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "-1"}}), diagnostics)
+  EXPECT_EQ(read_drive_spec(config({{"left_joint", "l"}, {"right_joint", "r"}, {"wheel_radius", "-1"}}),
+                            diagnostics)
                 .error()
                 .place.line,
             3);

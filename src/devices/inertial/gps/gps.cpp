@@ -71,7 +71,7 @@ Result<Receiver> Receiver::create(const DeviceBuild& build, Spec spec) {
 
 namespace {
 /// Variance of a channel about the truth, what is drawn at the start included.
-double variance_of(const ChannelNoiseSpec& c, double interval_s, double errors) {
+double channel_variance(const ChannelNoiseSpec& c, double interval_s, double errors) {
   return c.variance(interval_s, errors) + errors * errors * c.mean_std * c.mean_std;
 }
 }  // namespace
@@ -111,9 +111,9 @@ void Receiver::sense(PoolView<Receiver> pool, const Context& context) {
       message.altitude = place.height_m;
       // The errors may be tuned while it runs, so each sample has their present size.
       const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : context.tick.s();
-      message.position_covariance[0] = message.position_covariance[4] = variance_of(spec.horizontal,
-                                                                                    interval_s, spec.errors);
-      message.position_covariance[8] = variance_of(spec.vertical, interval_s, spec.errors);
+      message.position_covariance[0] = message.position_covariance[4] = channel_variance(
+          spec.horizontal, interval_s, spec.errors);
+      message.position_covariance[8] = channel_variance(spec.vertical, interval_s, spec.errors);
       gps.fix->publish(context.now);
     }
     if (pool.levels[index] >> velocity_level & 1) {

@@ -237,7 +237,7 @@ TEST(JointMotor, TheExactServoHoldsTheSpeedAndClosesAFifthOfTheErrorPerSubstep) 
   EXPECT_EQ(rig.engine->joint[0].velocity, -2);
 }
 
-Result<Spec> spec_of(const Node& plugin, std::string& level, Diagnostics& diagnostics) {
+Result<Spec> read_motor_spec(const Node& plugin, std::string& level, Diagnostics& diagnostics) {
   SL_ASSIGN(Node node, kind.from_sdf(plugin, diagnostics));
   level = node.find("level")->text();
   node.erase("level");
@@ -247,31 +247,31 @@ Result<Spec> spec_of(const Node& plugin, std::string& level, Diagnostics& diagno
 TEST(JointMotorFromSdf, TakesTheThreePluginsOfGazebo) {
   Diagnostics diagnostics;
   std::string level;
-  auto spec = spec_of(config({{"@name", "gz::sim::systems::JointController"},
-                              {"joint_name", "left"},
-                              {"initial_velocity", "5"}}),
-                      level, diagnostics);
+  auto spec = read_motor_spec(config({{"@name", "gz::sim::systems::JointController"},
+                                      {"joint_name", "left"},
+                                      {"initial_velocity", "5"}}),
+                              level, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(level, "velocity");
   EXPECT_EQ(spec->servo, Servo::exact);
   EXPECT_EQ(spec->initial_command, 5);
 
-  spec = spec_of(config({{"@filename", "libignition-gazebo-joint-controller-system.so"},
-                         {"joint_name", "left"},
-                         {"use_force_commands", "true"},
-                         {"p_gain", "0.2"},
-                         {"cmd_max", "8"}}),
-                 level, diagnostics);
+  spec = read_motor_spec(config({{"@filename", "libignition-gazebo-joint-controller-system.so"},
+                                 {"joint_name", "left"},
+                                 {"use_force_commands", "true"},
+                                 {"p_gain", "0.2"},
+                                 {"cmd_max", "8"}}),
+                         level, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(spec->servo, Servo::pid);
   EXPECT_EQ(spec->velocity.p, 0.2);
   EXPECT_EQ(spec->max_effort, 8);
 
-  spec = spec_of(config({{"@name", "gz::sim::systems::JointPositionController"},
-                         {"joint_name", "left"},
-                         {"p_gain", "20"},
-                         {"d_gain", "2"}}),
-                 level, diagnostics);
+  spec = read_motor_spec(config({{"@name", "gz::sim::systems::JointPositionController"},
+                                 {"joint_name", "left"},
+                                 {"p_gain", "20"},
+                                 {"d_gain", "2"}}),
+                         level, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(level, "position");
   EXPECT_EQ(spec->position.p, 20);
@@ -279,13 +279,13 @@ TEST(JointMotorFromSdf, TakesTheThreePluginsOfGazebo) {
   EXPECT_EQ(spec->position.d, 2);
   EXPECT_EQ(spec->initial_command, 0);
 
-  spec = spec_of(config({{"@name", "gz::sim::systems::ApplyJointForce"}, {"joint_name", "left"}}), level,
-                 diagnostics);
+  spec = read_motor_spec(config({{"@name", "gz::sim::systems::ApplyJointForce"}, {"joint_name", "left"}}),
+                         level, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(level, "effort");
   EXPECT_FALSE(spec->initial_command);
   EXPECT_TRUE(diagnostics.warnings.empty());
-  EXPECT_EQ(spec_of(config({{"@name", "JointController"}}), level, diagnostics).error().what,
+  EXPECT_EQ(read_motor_spec(config({{"@name", "JointController"}}), level, diagnostics).error().what,
             "this plugin names no joint");
 }
 

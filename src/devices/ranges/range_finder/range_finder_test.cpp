@@ -110,7 +110,7 @@ TEST(RangeFinder, ABadSpecIsRefusedAtItsPlace) {
             "robot.yaml:1:9: /radiation: 'infra' is not a choice here; known are: ultrasound, infrared");
 }
 
-Result<Spec> spec_of(const Node& element, Diagnostics& diagnostics) {
+Result<Spec> read_range_spec(const Node& element, Diagnostics& diagnostics) {
   SL_ASSIGN(const Node node, kind.from_sdf(element, diagnostics));
   return read_spec<Spec>(node);
 }
@@ -119,7 +119,7 @@ TEST(RangeFinderFromSdf, TakesSonars) {
   Node sensor = config({{"@type", "sonar"}, {"update_rate", "5"}});
   sensor.set("sonar", config({{"min", "0.1"}, {"max", "2"}, {"radius", "0.5"}}));
   Diagnostics diagnostics;
-  const auto spec = spec_of(sensor, diagnostics);
+  const auto spec = read_range_spec(sensor, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(spec->rate_hz, 5);
   EXPECT_EQ(spec->min_range_m, 0.1);
@@ -141,7 +141,7 @@ TEST(RangeFinderFromSdf, TakesRaySensorsWhosePluginPublishesARange) {
       .name = "ir", .sdf_types = {"sensor:ray", "plugin:libgazebo_ros_range.so"}, .config = sensor};
   ASSERT_EQ(find_device_kind_for_sdf(decl), &kind);
   Diagnostics diagnostics;
-  const auto spec = spec_of(sensor, diagnostics);
+  const auto spec = read_range_spec(sensor, diagnostics);
   ASSERT_TRUE(spec) << spec.error().text();
   EXPECT_EQ(spec->radiation, Radiation::infrared);
   EXPECT_NEAR(spec->fov_rad, 0.4, 1e-12);
