@@ -30,6 +30,9 @@ class SoccerTeam(unittest.TestCase):
         self.assertEqual(self.seeing("cyan2", (0, 0.35), (0.02, 9), state("running"))[2], player.KICK_IMPULSE)
         self.assertFalse(self.seeing("cyan2", (0, 0.6), (0.02, 9), state("running"))[2])
         self.assertFalse(self.seeing("cyan2", (0, 0.35), (0.5, 9), state("running"))[2])
+        # 0.2 rad is good enough for a kick to the front, and wide of the goal from 6 m.
+        self.assertTrue(self.seeing("cyan2", (0, 0.35), (0.2, 12), state("running"))[2])
+        self.assertFalse(self.seeing("cyan2", (0, 0.35), (0.2, 6), state("running"))[2])
 
     def test_goes_around_a_ball_that_lies_behind_it(self):
         (ahead, left, _), _, kick = self.seeing("cyan2", (math.pi, 0.8), (0, 9), state("running"))
@@ -46,6 +49,7 @@ class SoccerTeam(unittest.TestCase):
             return self.seeing("cyan3", ball, (0, 9), state(phase, "cyan", in_play=in_play))
         self.assertGreater(takes((0, 2), "preparing")[0][0], 0.5)
         self.assertEqual(takes((0, player.WAIT_M), "preparing")[0][0], 0.0)
+        self.assertLess(takes((0, 0.5), "preparing")[0][0], -0.5, "too near to the ball before the start")
         self.assertEqual(takes((0, 0.35), "running")[2], player.TAP_IMPULSE)
         self.assertEqual(takes((0, 0.35), "running", in_play=True), (player.STAND, False, 0.0))
         # As soon as another one has touched it, it plays like everybody.

@@ -10,6 +10,8 @@ import re
 REACH_M = 0.42      # the ball is between the arms
 OFF_M = 3.3         # from a ball that others put into play
 CLOSE_M = 2.5       # robots other than the striker go to a ball this near
+SHOT_M = 7.0        # from the goal; farther away a kick need not be so exact: it is a pass to the front
+AIM_FAR = 0.25      # rad
 KICK_IMPULSE = 4.0  # N s: a ball of 0.43 kg leaves with 9 m/s
 TAP_IMPULSE = 0.8   # N s, to take a set piece: the striker runs after the ball
 WAIT_M = 0.8        # from the ball, until a set piece may be taken
@@ -32,7 +34,7 @@ def play(number, ball, goal):
         return (0.0, 0.0, 2.0 * bearing), False, False
     aim = goal[0]
     if distance < REACH_M and abs(bearing) < 0.3:
-        if abs(aim) < max(0.08, math.atan2(0.8, goal[1])):
+        if abs(aim) < (AIM_FAR if goal[1] > SHOT_M else math.atan2(0.8, goal[1])):
             return (1.0, 0.0, 2.0 * aim), False, True
         return (0.2, 0.0, max(-1.2, min(1.2, 2.0 * aim))), True, False
     return behind(ball, goal), True, False
@@ -64,6 +66,11 @@ def towards(sight):
     """To what was seen there."""
     speed = min(2.0, 0.3 + sight[1])
     return speed * math.cos(sight[0]), speed * math.sin(sight[0]), 2.0 * sight[0]
+
+
+def away_from(sight):
+    """Straight away from what was seen there."""
+    return -math.cos(sight[0]), -math.sin(sight[0]), 0.0
 
 
 def turn_to(angle):
@@ -143,6 +150,8 @@ class Player:
         if ball is None:
             return (0.0, 0.0, 1.5), False, 0.0
         if self.phase == "preparing":
+            if ball[1] < WAIT_M - 0.15:
+                return away_from(ball), False, 0.0
             return behind(ball, goal, WAIT_M), False, 0.0
         at_ball = ball[1] < REACH_M and abs(ball[0]) < 0.3
         return behind(ball, goal), False, TAP_IMPULSE if at_ball else 0.0
@@ -150,7 +159,7 @@ class Player:
     def keep_off(self, ball, goal, home):
         """Away from a ball that is put into play; at a kick-off in the own half."""
         if ball and ball[1] < OFF_M:
-            return -math.cos(ball[0]), -math.sin(ball[0]), 0.0
+            return away_from(ball)
         if self.set_piece == "kickoff" and home[1] > goal[1] - 2.0:
             return towards(home)
         return STAND

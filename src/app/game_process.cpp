@@ -59,6 +59,8 @@ std::vector<std::string> match_arguments(const MatchSpec& spec, const tournament
   if (spec.half_s) add("--duration", number_text(2 * *spec.half_s) + " s");
   for (const formats::Override& each : spec.run.spec.overrides) add("--set", each.path + "=" + each.value);
   add("--record", game.recording);
+  // A replay makes all other messages again.
+  if (!game.recording.empty()) add("--record-topics", "/rules/*");
   return out;
 }
 

@@ -27,11 +27,11 @@ TEST(GameProcess, ArgumentsHaveAllThatMakesTheGame) {
   spec.run.spec.overrides = {{"players", "2"}, {"break", "1 s"}};
   tournament::Match game = game_of_seed(18446744073709551615u);
   game.recording = "cup/games/a.mcap";
-  EXPECT_THAT(
-      match_arguments(spec, game),
-      ElementsAre("match", "teams/a", "teams/b b", "--seed", "18446744073709551615", "--level", "objects",
-                  "--drive", "ideal", "--physics", "planar", "--size", "12x8", "--duration", "0.2 s", "--set",
-                  "players=2", "--set", "break=1 s", "--record", "cup/games/a.mcap"));
+  EXPECT_THAT(match_arguments(spec, game),
+              ElementsAre("match", "teams/a", "teams/b b", "--seed", "18446744073709551615", "--level",
+                          "objects", "--drive", "ideal", "--physics", "planar", "--size", "12x8",
+                          "--duration", "0.2 s", "--set", "players=2", "--set", "break=1 s", "--record",
+                          "cup/games/a.mcap", "--record-topics", "/rules/*"));
 }
 
 TEST(GameProcess, ResultIsThatOfTheJson) {

@@ -14,7 +14,7 @@ constexpr const char* style =
     ".table{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;margin:1rem 0}"
     "th,td{border-bottom:1px solid #ddd;padding:.3rem .7rem;text-align:left;vertical-align:top}"
     "th{border-bottom:2px solid #888}figure{margin:1.2rem 0}figure svg{max-width:100%;height:auto}"
-    "figcaption{font-size:.9rem;color:#555}";
+    "figcaption{font-size:.9rem;color:#555}code{white-space:nowrap}";
 
 /// `text` with `added` behind each `place`.
 std::string with_added(std::string_view text, std::string_view place, std::string_view added) {
