@@ -133,7 +133,10 @@ export class App {
       this.frame.addPane({id, title, panel});
     }
     this.frame.setPresent('match', false);
-    this.game.onState.on((state) => this.frame.setPresent('match', state !== null));
+    this.game.onState.on((state) => {
+      this.frame.setPresent('match', state !== null);
+      if (state !== null) this.frame.suggest('match');
+    });
     this.frame.addPhoneTab('tree', 'World', 'list');
     this.frame.addPhoneTab('inspect', 'Inspect', 'sliders');
     this.frame.addPhoneTab('dock', 'Plots', 'plot', 'plots');

@@ -26,6 +26,7 @@ export class Frame {
   private readonly phoneTabs = h('nav', {class: 'phone-tabs', 'aria-label': 'Panels'});
   private readonly panes = new Map<string, {pane: Pane; tab: HTMLButtonElement; badge: HTMLElement}>();
   private active = remembered('dock.tab', 'plots');
+  private chosen = remembered('dock.tab', '') !== '';
   private readonly narrow = matchMedia('(max-width: 720px)');
   private fold: Record<Side, boolean> = {...{left: false, right: false, dock: innerHeight < 620}, ...remembered<Partial<Record<Side, boolean>>>('frame.folded', {})};
   private phone: PhonePanel = 'none';
@@ -83,14 +84,24 @@ export class Frame {
       'data-phone': panel, 'data-pane': pane ?? '', 'aria-pressed': 'false', on: {click: () => {
         const same = this.phone === panel && (pane === undefined || this.active === pane);
         this.phone = same ? 'none' : panel;
+        if (pane) this.chosen = true;
         if (pane && !same) this.active = pane;
         this.apply();
       }},
     }, icon(iconName, 18), title));
   }
 
+  /** Shows a pane behind its tab, once, unless somebody has chosen one, here or in an earlier visit. */
+  suggest(id: string): void {
+    if (this.chosen || !this.panes.has(id)) return;
+    this.chosen = true;
+    this.active = id;
+    this.apply();
+  }
+
   open(id: string): void {
     if (!this.panes.has(id)) return;
+    this.chosen = true;
     this.active = id;
     this.fold.dock = false;
     if (this.narrow.matches) this.phone = 'dock';
