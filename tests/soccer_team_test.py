@@ -19,7 +19,7 @@ class SoccerTeam(unittest.TestCase):
         one = player.Player(name)
         one.learn(words)
         seen = {"ball": ball, "goal_magenta": goal, "goal_cyan": home}
-        one.look(1.0, [{"label": label, "bearing": at[0], "range": at[1]} for label, at in seen.items() if at])
+        one.look(1.0, [{"label": label, "bearing": at[0], "range": at[1], "elevation": 0.0} for label, at in seen.items() if at])
         return one.decide(1.0)
 
     def test_stands_until_the_game_runs(self):
@@ -71,15 +71,22 @@ class SoccerTeam(unittest.TestCase):
     def test_plays_the_other_way_after_half_time(self):
         one = player.Player("cyan2")
         one.learn(state("running", attacks=False))
-        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 0.35}, {"label": "goal_cyan", "bearing": 0, "range": 9},
-                       {"label": "goal_magenta", "bearing": 2, "range": 9}])
+        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 0.35, "elevation": 0.0}, {"label": "goal_cyan", "bearing": 0, "range": 9, "elevation": 0.0},
+                       {"label": "goal_magenta", "bearing": 2, "range": 9, "elevation": 0.0}])
         self.assertTrue(one.decide(1.0)[2])
+
+    def test_takes_the_distance_along_the_ground_from_an_eye_above_the_ball(self):
+        one = player.Player("cyan2")
+        one.learn(state("running"))
+        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 0.69, "elevation": -1.04}, {"label": "goal_magenta", "bearing": 0, "range": 5, "elevation": 0.0}])
+        self.assertAlmostEqual(one.ball.at(1.0)[1], 0.35, delta=0.01)
+        self.assertEqual(one.decide(1.0)[2], player.KICK_IMPULSE)
 
     def test_forgets_a_ball_it_has_not_seen_for_long(self):
         one = player.Player("cyan2")
         one.learn(state("running"))
-        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 3}])
-        one.look(9.0, [{"label": "goal_magenta", "bearing": 0, "range": 9}])
+        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 3, "elevation": 0.0}])
+        one.look(9.0, [{"label": "goal_magenta", "bearing": 0, "range": 9, "elevation": 0.0}])
         self.assertEqual(one.decide(9.0)[0], (0.0, 0.0, 1.5))
 
 

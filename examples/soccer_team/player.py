@@ -112,10 +112,12 @@ class Player:
 
     def look(self, now_s, objects):
         for thing in sorted(objects, key=lambda each: -each["range"]):
+            # The eye is high above the ball: along the ground it is nearer than its range.
+            sight = thing["bearing"], thing["range"] * math.cos(thing["elevation"])
             if thing["label"] == "ball":
-                self.ball.see(now_s, (thing["bearing"], thing["range"]))
+                self.ball.see(now_s, sight)
             elif thing["label"] in self.goals:
-                self.goals[thing["label"]].see(now_s, (thing["bearing"], thing["range"]))
+                self.goals[thing["label"]].see(now_s, sight)
 
     def decide(self, now_s):
         """@return velocity as of play(), whether to hold the ball, impulse of the kick [N s]"""
