@@ -42,6 +42,10 @@ class SoccerTeam(unittest.TestCase):
     def test_keeps_off_the_set_pieces_of_others(self):
         self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "magenta"))[0][0], -0.5)
         self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "cyan"))[0][0], -0.5)
+        # The striker waits near a ball of its own team.
+        self.assertGreater(self.seeing("cyan2", (0, 6), (0, 9), state("preparing", "cyan"))[0][0], 0.5)
+        self.assertEqual(self.seeing("cyan2", (0, 2.4), (0, 9), state("preparing", "cyan"))[0], player.STAND)
+        self.assertEqual(self.seeing("cyan4", (0, 6), (0, 9), state("preparing", "cyan"))[0], player.STAND)
         self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("running", "magenta"))[0][0], -0.5, "it is not in play yet")
 
     def test_taps_its_own_set_pieces_and_leaves_the_ball_to_the_others(self):

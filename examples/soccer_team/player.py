@@ -8,7 +8,8 @@ import math
 import re
 
 REACH_M = 0.42      # the ball is between the arms
-OFF_M = 3.3         # from a ball that others put into play
+OFF_M = 3.3         # from a ball that the other team puts into play
+OFF_OURS_M = 2.3    # that a team-mate puts into play
 CLOSE_M = 2.5       # robots other than the striker go to a ball this near
 SHOT_M = 7.0        # from the goal; farther away a kick need not be so exact: it is a pass to the front
 AIM_FAR = 0.25      # rad
@@ -160,8 +161,11 @@ class Player:
 
     def keep_off(self, ball, goal, home):
         """Away from a ball that is put into play; at a kick-off in the own half."""
-        if ball and ball[1] < OFF_M:
+        off_m = OFF_OURS_M if self.is_ours else OFF_M
+        if ball and ball[1] < off_m:
             return away_from(ball)
+        if self.is_ours and self.number == STRIKER and ball and ball[1] > off_m + 0.3:
+            return towards(ball)
         if self.set_piece == "kickoff" and home[1] > goal[1] - 2.0:
             return towards(home)
         return STAND
