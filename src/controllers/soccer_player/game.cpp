@@ -71,8 +71,11 @@ void settle(Game& game, Vec3 ball) {
 bool is_open(const Game& game, Vec3 ball, double now_s) {
   if (game.phase != Phase::running) return false;
   if (game.piece == Piece::none) return true;
+  // Less may be an error of who sees it from far away.
+  constexpr double moved_m = 0.6;
   const Vec3 moved = flat(ball) - game.spot;
-  return dot(moved, moved) > 0.09 || now_s - game.since_s > (game.piece == Piece::penalty ? 10 : 7);
+  return dot(moved, moved) > moved_m * moved_m ||
+         now_s - game.since_s > (game.piece == Piece::penalty ? 10 : 7);
 }
 
 }  // namespace sandlot::controllers::soccer_player

@@ -89,9 +89,10 @@ msg::Twist drive(const Self& self, Vec3 velocity, double yaw_rad, const Limits& 
 }
 
 Vec3 beside_goals(const soccer::Dimensions& field, Vec3 from, Vec3 to) {
-  constexpr double margin_m = 0.28, back_m = 0.7, beside_m = 0.3;
+  constexpr double margin_m = 0.28, back_m = 0.7, beside_m = 0.3, posts_m = 0.9;
   const double line = 0.5 * field.length_m, aside = std::abs(to.y - from.y);
   if (std::abs(from.x) < line - margin_m || aside < beside_m) return to;
+  if (std::abs(from.y) > 0.5 * field.goal_width_m + posts_m) return to;  // clear of it
   return {std::copysign(line - back_m, from.x), from.y, 0};
 }
 

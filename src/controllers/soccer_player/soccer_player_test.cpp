@@ -426,6 +426,7 @@ TEST(SoccerPlayer, ComesOutFromBesideAGoalStraight) {
   EXPECT_EQ(beside_goals(field, {11.4, 1.6, 0}, {5, 0, 0}), (Vec3{10.3, 1.6, 0}));
   EXPECT_EQ(beside_goals(field, {-11.4, 0.2, 0}, {-9, 3, 0}), (Vec3{-10.3, 0.2, 0}));
   EXPECT_EQ(beside_goals(field, {10.5, 1.6, 0}, {5, 0, 0}), (Vec3{5, 0, 0}));
+  EXPECT_EQ(beside_goals(field, {11.2, 6.5, 0}, {10, 5, 0}), (Vec3{10, 5, 0})) << "at the corner";
 }
 
 TEST(SoccerPlayer, MeetsRobotsOfTheOtherTeamSlowly) {
