@@ -19,7 +19,7 @@ with Robot() as robot:
                     ball = thing["position"]
         x, y, turn = 0.0, 0.0, 0.0
         if runs and ball:
-            x, y, turn = clamp(1.5 * ball["x"], 2.0), clamp(1.5 * ball["y"], 2.0), clamp(3.0 * ball["y"], 3.0)
+            x, y, turn = clamp(0.3 * ball["x"], 2.0), clamp(0.3 * ball["y"], 2.0), clamp(3.0 * ball["y"], 3.0)
         robot.command("drive", {"linear": {"x": x, "y": y}, "angular": {"z": turn}})
         if runs and ball and 0 < ball["x"] < 0.45 and -0.15 < ball["y"] < 0.15:
             robot.command("kicker", {"data": 2.5})

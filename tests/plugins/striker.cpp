@@ -44,8 +44,8 @@ struct Striker {
           state.x_m = thing.position.x, state.y_m = thing.position.y, state.seen = true;
     sandlot::msg::Twist order;
     if (state.runs && state.seen) {
-      order.linear.x = std::clamp(1.5 * state.x_m, -2.0, 2.0);
-      order.linear.y = std::clamp(1.5 * state.y_m, -2.0, 2.0);
+      order.linear.x = std::clamp(0.3 * state.x_m, -2.0, 2.0);
+      order.linear.y = std::clamp(0.3 * state.y_m, -2.0, 2.0);
       order.angular.z = std::clamp(3.0 * state.y_m, -3.0, 3.0);
     }
     cmd.set(drive, order);

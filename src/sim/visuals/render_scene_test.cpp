@@ -111,7 +111,7 @@ constexpr const char* boards = R"(<sdf version="1.9"><world name="w">
 <model name="again"><static>1</static><pose>0 50 0 0 0 0</pose><link name="l"><visual name="v"><geometry><mesh><uri>board.obj</uri></mesh></geometry></visual></link></model>
 <model name="eye"><static>1</static><link name="l"><sensor name="camera" type="camera"><update_rate>10</update_rate><camera>
 <image><width>8</width><height>8</height></image></camera></sensor></link></model>
-</render_world></sdf>)";
+</world></sdf>)";
 
 TEST(RenderScene, MissingTexturesAreACheckerAndOneWarningEach) {
   const test::TestFolder folder;
