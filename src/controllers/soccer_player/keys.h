@@ -110,8 +110,8 @@ struct Keys {
 
 /// What the ways of playing differ in.
 struct Style {
-  double passes, carries,
-      pushes;    ///< factors on the worth of passes, of carrying the ball and of pushing it on
+  /// Factors on the worth of passes, of carrying the ball and of pushing it on.
+  double passes, carries, pushes;
   double line;   ///< depth of the defence: 0 at the goal, 1 at the ball
   int pressers;  ///< players that go for a ball of the opponents beside the attacker
   bool places;   ///< whether those without the ball take places
