@@ -18,7 +18,7 @@
 ///           receive (server/http/udp_gate.h). It gets text messages of at most most_datagram_bytes; longer ones are dropped.
 /// Local     ports in the file system take the same; their connections have the port's access, and are not among `most_clients`.
 /// Closed    (counted as refused, with a code and a reason) clients whose messages are over the limits of wire/foxglove.h (spectators: 1 MiB,
-///           whatever the kind) or more than 2000 a second for long, or that are no WebSocket frames.
+///           whatever the kind), come at more than `messages_per_s` for long, or are no WebSocket frames.
 /// Gone      a client that is silent for `silence_s` although it was sent pings; an HTTP connection that asks nothing for `idle_s`.
 /// Errors    start(): the address cannot be bound. An exception out of the Handler or out of memory ends the one connection it concerns.
 #include <cstdint>
@@ -69,6 +69,7 @@ struct TransportOptions {
   /// Sockets of one address; of loopback, which all programs of a machine share.
   std::size_t most_per_address = 32, most_from_loopback = 256;
   double wrong_tokens_at_once = 20, wrong_token_pause_s = 1;  ///< per address; server/http/guesses.h
+  double messages_per_s = 2000, messages_at_once = 4000;      ///< of one client; who sends more is closed
   double work_share = 0.25;  ///< of the thread's time that the messages of one client may take
   double handshake_s = 10, stall_s = 30, silence_s = 30, idle_s = 60;
   double udp_silence_s = 10;

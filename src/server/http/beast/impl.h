@@ -7,6 +7,7 @@
 #if SL_THREAD_SANITIZER
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK  // the sanitizer knows no fences; Asio's mutexes order everything without them
 #endif
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -19,6 +20,7 @@
 #include <optional>
 #include <thread>
 
+#include "base/text.h"
 #include "server/http/guesses.h"
 #include "server/http/transport.h"
 
@@ -55,6 +57,23 @@ struct Queue {
   bool scheduled = false;  // flush() is on its way
   bool full = false;       // something that must arrive did not fit
   std::uint64_t dropped = 0;
+};
+
+/// The messages that a client may still send: so many at once, and so many more a second.
+struct Allowance {
+  explicit Allowance(const TransportOptions& options)
+      : per_s(options.messages_per_s), most(options.messages_at_once), left(most) {}
+  /// @return whether there was one left
+  bool take(Clock::time_point now = Clock::now()) {
+    left = std::min(most, left + per_s * std::chrono::duration<double>(now - last).count());
+    last = now;
+    return (left -= 1) >= 0;
+  }
+  void grant(double messages) { left = std::min(most, left + messages); }
+  std::string refusal() const { return "more than " + number_text(per_s) + " messages a second"; }
+
+  double per_s, most, left;
+  Clock::time_point last = Clock::now();
 };
 
 /// A connection, from accept to end. Every function may end it; whoever calls holds a PeerPtr meanwhile.

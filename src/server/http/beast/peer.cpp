@@ -36,7 +36,6 @@ namespace ws = beast::websocket;
 constexpr std::size_t most_head_bytes = 16 << 10;
 constexpr std::size_t slice_bytes = 1 << 20;  // of a long message, so that a slow reader's progress is seen
 constexpr std::size_t most_linger_bytes = 1 << 20;  // read and thrown away after a refusal
-constexpr double messages_per_s = 2000, burst = 4000;
 constexpr double work_at_once_s = 0.1, work_per_granted_s = 100e-6;
 constexpr auto patience_with_new = std::chrono::seconds(1);
 
@@ -86,8 +85,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   std::shared_ptr<Queue> queue;
   Message current;
   ws::close_reason farewell;
-  Clock::time_point heard, progress, next_ping, bucket_time;
-  double bucket = burst;
+  Clock::time_point heard, progress, next_ping;
+  Allowance allowance{impl.options};
   // Time that its messages may take still; below 0 it is not read.
   double work_s = work_at_once_s;
   Clock::time_point worked;
@@ -292,7 +291,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       const auto next = raw->next();
       if (!next) return refuse_client(ws::close_code::bad_payload, next.error().what);
       if (!*next) return;
-      if (!allowed()) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
+      if (!allowance.take()) return refuse_client(ws::close_code::policy_error, allowance.refusal());
       hand_over(std::as_bytes(std::span(**next)), true);
     }
   }
@@ -323,9 +322,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                                impl.bytes_in += n, facts.bytes_in += n;
                                heard = Clock::now();
                                buffer.commit(n);
-                               if (n < 256 && !allowed())
-                                 return refuse_client(ws::close_code::policy_error,
-                                                      "more than 2000 messages a second");
+                               if (n < 256 && !allowance.take())
+                                 return refuse_client(ws::close_code::policy_error, allowance.refusal());
                                read_raw();
                              }));
   }
@@ -400,7 +398,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
     stream.read_message_max(access.is_admin() ? foxglove::most_binary_bytes : foxglove::most_text_bytes);
     stream.control_callback([this](ws::frame_type, beast::string_view) {
       heard = Clock::now();
-      if (!allowed()) flood = true;  // closed at the next beat: not from within Beast's reading
+      if (!allowance.take()) flood = true;  // closed at the next beat: not from within Beast's reading
     });
     stream.async_accept(parser->get(), guarded([this](error_code ec) {
                           parser.reset();
@@ -414,7 +412,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
 
   void opened() {
     stage = Stage::open;
-    heard = progress = bucket_time = worked = Clock::now();
+    heard = progress = worked = Clock::now();
     if (!raw) buffer = beast::flat_buffer(foxglove::most_binary_bytes + (64 << 10));
     facts.address = remote_address(socket());
     ++impl.accepted;
@@ -442,8 +440,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
           if (stream.got_text() && buffer.size() > foxglove::most_text_bytes)
             return refuse_client(ws::close_code::too_big, "a text message may have 1 MiB");
           // Messages, and crumbs of them, which are as much work.
-          if ((stream.is_message_done() || n < 256) && !allowed())
-            return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
+          if ((stream.is_message_done() || n < 256) && !allowance.take())
+            return refuse_client(ws::close_code::policy_error, allowance.refusal());
           if (stream.is_message_done()) {
             const auto data = buffer.cdata();
             hand_over({static_cast<const std::byte*>(data.data()), data.size()}, stream.got_text());
@@ -452,15 +450,6 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
           }
           if (stage == Stage::open && !rests()) read();
         }));
-  }
-
-  /// Takes one from the allowance of messages.
-  bool allowed() {
-    const auto now = Clock::now();
-    bucket = std::min(burst,
-                      bucket + messages_per_s * std::chrono::duration<double>(now - bucket_time).count());
-    bucket_time = now;
-    return (bucket -= 1) >= 0;
   }
 
   /// Writes the next message, if there is one and none is being written.
@@ -586,7 +575,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
       else read();
       if (stage != Stage::open) return;
     }
-    if (flood) return refuse_client(ws::close_code::policy_error, "more than 2000 messages a second");
+    if (flood) return refuse_client(ws::close_code::policy_error, allowance.refusal());
     const double silent_s = std::chrono::duration<double>(now - heard).count();
     if (writing) {
       if (now - progress > seconds(impl.options.stall_s)) {
@@ -608,7 +597,7 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
   }
 
   void grant(double messages) override {
-    bucket = std::min(burst, bucket + messages);
+    allowance.grant(messages);
     work_s = std::min(work_at_once_s, work_s + messages * work_per_granted_s);
   }
 

@@ -28,7 +28,6 @@ using udp = net::ip::udp;
 
 namespace {
 
-constexpr double messages_per_s = 2000, burst = 4000;
 constexpr std::size_t most_first_bytes = 4096;  ///< of a datagram without a key
 constexpr std::size_t most_per_address = 16;    ///< clients
 constexpr std::size_t most_read_bytes = 1 << 16;
@@ -93,8 +92,8 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
   bool writing = false;
   std::string farewell;
   const Clock::time_point came = Clock::now();
-  Clock::time_point heard = came, bucket_time = came, closing_since;
-  double bucket = burst;
+  Clock::time_point heard = came, closing_since;
+  Allowance allowance{impl.options};
 
   UdpPeer(UdpDoor& owner, std::uint64_t number, const udp::endpoint& address, std::string key)
       : door(owner),
@@ -118,10 +117,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
   void take(std::string_view text) {
     heard = Clock::now();
     if (stage != Stage::open) return;
-    bucket = std::min(burst,
-                      bucket + messages_per_s * std::chrono::duration<double>(heard - bucket_time).count());
-    bucket_time = heard;
-    if ((bucket -= 1) < 0) return close_for("more than 2000 messages a second");
+    if (!allowance.take(heard)) return close_for(allowance.refusal());
     if (impl.handler.message) impl.handler.message(id, std::as_bytes(std::span(text)), true);
   }
 
@@ -210,7 +206,7 @@ struct UdpPeer final : Peer, std::enable_shared_from_this<UdpPeer> {
     else if (stage == Stage::closing && over(closing_since, 1)) end();
   }
 
-  void grant(double messages) override { bucket = std::min(burst, bucket + messages); }
+  void grant(double messages) override { allowance.grant(messages); }
   void stop() override {
     {
       const std::lock_guard lock(impl.mutex);
