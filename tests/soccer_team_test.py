@@ -34,10 +34,43 @@ class SoccerTeam(unittest.TestCase):
         self.assertTrue(self.seeing("cyan2", (0, 0.35), (0.2, 12), state("running"))[2])
         self.assertFalse(self.seeing("cyan2", (0, 0.35), (0.2, 6), state("running"))[2])
 
-    def test_goes_around_a_ball_that_lies_behind_it(self):
-        (ahead, left, _), _, kick = self.seeing("cyan2", (math.pi, 0.8), (0, 9), state("running"))
-        self.assertFalse(kick)
+    def test_turns_to_a_ball_that_lies_behind_it_and_drives_to_one_far_away(self):
+        (ahead, left, turn), hold, kick = self.seeing("cyan2", (2.5, 0.8), (0, 9), state("running"))
+        self.assertEqual((ahead, left, hold, kick), (0, 0, True, 0))
+        self.assertGreater(turn, 1)
+        (ahead, left, turn), _, kick = self.seeing("cyan2", (2.5, 3), (0, 9), state("running"))
+        self.assertAlmostEqual(math.atan2(left, ahead), 2.5)
+        self.assertAlmostEqual(math.hypot(left, ahead), player.SPEED_MPS)
+
+    def test_goes_around_the_ball_of_a_set_piece(self):
+        ahead, left, _ = player.behind((math.pi, 0.8), (0, 9))
         self.assertGreater(abs(left), 0.3, "not straight over the ball: ahead %g" % ahead)
+
+    def test_the_nearest_of_the_team_goes_and_the_others_wait_around(self):
+        one = player.Player("cyan2")
+        one.learn(state("running"))
+        one.look(1.0, [{"label": "ball", "bearing": 0, "range": 4, "elevation": 0.0}, {"label": "goal_cyan", "bearing": math.pi, "range": 6, "elevation": 0.0}])
+        self.assertEqual(one.tell(1.0), "cyan 2 4.00")
+        goes = one.decide(1.0)
+        self.assertGreater(goes[0][0], 2)
+        for text in ("magenta 3 1.0", "cyan 3 5.0", "cyan 1 0.5", "cyan 2 1.0", "cyan x y", "", "cyan 3"):
+            one.hear(1.0, text)
+            self.assertEqual(one.decide(1.0), goes, text)
+        one.hear(1.0, "cyan 3 3.5")
+        (ahead, left, _), hold, kick = one.decide(1.0)
+        # 3 m from the ball, at 0.8 (2 - 3.5) rad from the direction to the own goal, which is pi.
+        x, y = 4 + 3 * math.cos(math.pi - 1.2), 3 * math.sin(math.pi - 1.2)
+        self.assertAlmostEqual(math.atan2(left, ahead), math.atan2(y, x))
+        self.assertEqual((hold, kick), (False, 0))
+        # What was said a while ago counts no more.
+        self.assertTrue(one.is_nearest(1.0 + player.NEWS_S, 4))
+
+    def test_shoots_past_who_stands_before_the_goal(self):
+        goal, side = (0.1, 5.0), math.atan2(player.CORNER_M, 5.0)
+        self.assertAlmostEqual(player.free_corner(goal, []), 0.1)
+        self.assertAlmostEqual(player.free_corner(goal, [(0.1, 7.0)]), 0.1, msg="one behind the goal is in nobody's way")
+        self.assertAlmostEqual(player.free_corner(goal, [(0.12, 4.0)]), 0.1 - side)
+        self.assertAlmostEqual(player.free_corner(goal, [(0.08, 4.0)]), 0.1 + side)
 
     def test_keeps_off_the_set_pieces_of_others(self):
         self.assertLess(self.seeing("cyan2", (0, 2), (0, 9), state("preparing", "magenta"))[0][0], -0.5)
@@ -68,9 +101,13 @@ class SoccerTeam(unittest.TestCase):
         self.assertGreater(self.seeing("cyan1", (1, 6), (math.pi, 5), state("running"), home=(0, 17))[0][0], 1)
         # A goal that is not seen is where the compass says: behind a robot that looks at the other one.
         self.assertLess(self.seeing("cyan1", (1, 6), (0, 5), state("running"))[0][0], -1)
-        ahead, left, turn = self.seeing("cyan1", (1, 6), (math.pi, 20), state("running"), home=(3, 1))[0]
-        self.assertEqual((ahead, left), (0, 0))
-        self.assertGreater(turn, 1)
+        # On the line from the goal, 1 m to the left, to the ball: from there the ball lies to the right and ahead.
+        ahead, left, turn = self.seeing("cyan1", (0, 6), (math.pi, 20), state("running"), home=(math.pi / 2, 1))[0]
+        length = math.hypot(6, 1)
+        self.assertAlmostEqual(math.atan2(left, ahead), math.atan2(1 - 1 / length, 6 / length))
+        at_home = self.seeing("cyan1", (0, 6), (math.pi, 20), state("running"), home=(math.pi, player.HOME_M))[0]
+        self.assertEqual(at_home, player.STAND)
+        self.assertEqual(self.seeing("cyan1", (0, 0.35), (math.pi, 20), state("running"), home=(math.pi, 1))[2], player.KICK_IMPULSE)
 
     def test_plays_the_other_way_after_half_time(self):
         one = player.Player("cyan2")

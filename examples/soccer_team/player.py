@@ -8,43 +8,63 @@ import math
 import re
 
 REACH_M = 0.42      # the ball is between the arms
+NEAR_M = 0.9        # from a ball, that only its arms should touch
+SPEED_MPS = 2.8
+TURN_RADPS = 4.0
+TURN_WITH_BALL_RADPS = 1.5
 OFF_M = 3.3         # from a ball that the other team puts into play
 OFF_OURS_M = 2.3    # that a team-mate puts into play
-CLOSE_M = 2.5       # robots other than the striker go to a ball this near
+SUPPORT_M = 3.0     # from the ball: where those wait who do not run after it
 SHOT_M = 7.0        # from the goal; farther away a kick need not be so exact: it is a pass to the front
 AIM_FAR = 0.25      # rad
+CORNER_M = 0.75     # from the middle of the goal: where shots go that pass a robot before it
 KICK_IMPULSE = 4.0  # N s: a ball of 0.43 kg leaves with 9 m/s
-TAP_IMPULSE = 0.8   # N s, to take a set piece: the striker runs after the ball
+TAP_IMPULSE = 0.8   # N s, to take a set piece: another one runs after the ball
 WAIT_M = 0.8        # from the ball, until a set piece may be taken
-HOME_M = 1.5        # the keeper's distance from the middle of its goal
+HOME_M = 1.0        # the keeper's distance from the middle of its goal
 FAR_M = 20.0        # of a goal that is not seen: where the compass says
-KEEPER, STRIKER, TAKER = 1, 2, 3
+NEWS_S = 0.5        # how long what a team-mate said by radio counts
+KEEPER, TAKER = 1, 3
 STAND = (0.0, 0.0, 0.0)
 
 
-def play(number, ball, goal):
-    """What to do.
+def play(ball, goal, robots=()):
+    """What the robot does that has the ball, or is the nearest of its team to it.
 
-    ball, goal: (bearing [rad], range [m]) seen from the robot; ball is None where it is not known
+    ball, goal, robots: (bearing [rad], range [m]) seen from the robot
     @return (ahead [m/s], left [m/s], turn [rad/s]), whether to hold the ball, whether to kick
     """
-    if ball is None:
-        return (0.0, 0.0, 1.5), False, False
     bearing, distance = ball
-    if number != STRIKER and distance > CLOSE_M:
-        return (0.0, 0.0, 2.0 * bearing), False, False
-    aim = goal[0]
-    if distance < REACH_M and abs(bearing) < 0.3:
-        if abs(aim) < (AIM_FAR if goal[1] > SHOT_M else math.atan2(0.8, goal[1])):
-            return (1.0, 0.0, 2.0 * aim), False, True
-        return (0.2, 0.0, max(-1.2, min(1.2, 2.0 * aim))), True, False
-    return behind(ball, goal), True, False
+    if distance < NEAR_M and abs(bearing) > 0.6:
+        return (0.0, 0.0, limited(5.0 * bearing, TURN_RADPS)), True, False
+    if distance > REACH_M or abs(bearing) > 0.3:
+        return towards(ball), True, False
+    aim = free_corner(goal, robots)
+    if abs(aim) < (AIM_FAR if goal[1] > SHOT_M else math.atan2(0.4, goal[1])):
+        return (1.0, 0.0, 2.0 * aim), False, True
+    return (0.2, 0.0, limited(3.0 * aim, TURN_WITH_BALL_RADPS)), True, False
+
+
+def free_corner(goal, robots):
+    """The bearing within the goal that is farthest from the robots before it; its middle where there are none."""
+    def room(aim):
+        return min([1.0] + [abs(turn_to(bearing - aim)) for bearing, distance in robots if distance < goal[1] + 0.5])
+    side = math.atan2(CORNER_M, goal[1])
+    return turn_to(max((goal[0], goal[0] + side, goal[0] - side), key=room))
+
+
+def support(number, ball, home):
+    """Between the ball and the own goal, each robot at a place of its own, looking at the ball."""
+    ball_x, ball_y = vector(ball)
+    home_x, home_y = vector(home)
+    angle = math.atan2(home_y - ball_y, home_x - ball_x) + 0.8 * (number - 3.5)
+    return to_point(ball_x + SUPPORT_M * math.cos(angle), ball_y + SUPPORT_M * math.sin(angle), ball[0])
 
 
 def behind(ball, goal, gap_m=0.0):
     """To a point on the line from the goal through the ball, so far behind it, and around the ball where that lies in the way."""
     (bearing, distance), aim = ball, goal[0]
-    ball_x, ball_y = distance * math.cos(bearing), distance * math.sin(bearing)
+    ball_x, ball_y = vector(ball)
     to_x, to_y = goal[1] * math.cos(aim) - ball_x, goal[1] * math.sin(aim) - ball_y
     away = max(0.01, math.hypot(to_x, to_y))
     side = turn_to(math.atan2(to_y, to_x) - bearing)  # 0: the ball lies between robot and goal
@@ -56,22 +76,36 @@ def behind(ball, goal, gap_m=0.0):
         if abs(side) > 1.6 and distance < 1.2:
             step = 0.9 if side > 0 else -0.9  # sideways first
             x, y = x + step * math.sin(bearing), y - step * math.cos(bearing)
+    if math.hypot(x, y) < 0.1:
+        return 0.0, 0.0, limited(3.0 * aim, TURN_RADPS)
+    return to_point(x, y, aim if abs(side) < 0.3 else bearing)
+
+
+def to_point(x, y, look):
+    """To a point in the robot's frame, turning to where it looks [rad]."""
     gap = math.hypot(x, y)
     if gap < 0.1:
-        return 0.0, 0.0, 3.0 * aim
-    speed = min(2.0, 0.3 + 1.2 * gap) / max(gap, 0.01)
-    return speed * x, speed * y, 3.0 * (aim if abs(side) < 0.3 else bearing)
+        return 0.0, 0.0, limited(3.0 * look, TURN_RADPS)
+    speed = min(SPEED_MPS, 0.3 + 1.2 * gap) / gap
+    return speed * x, speed * y, limited(3.0 * look, TURN_RADPS)
 
 
 def towards(sight):
     """To what was seen there."""
-    speed = min(2.0, 0.3 + sight[1])
-    return speed * math.cos(sight[0]), speed * math.sin(sight[0]), 2.0 * sight[0]
+    return to_point(*vector(sight), sight[0])
 
 
 def away_from(sight):
     """Straight away from what was seen there."""
     return -math.cos(sight[0]), -math.sin(sight[0]), 0.0
+
+
+def vector(sight):
+    return sight[1] * math.cos(sight[0]), sight[1] * math.sin(sight[0])
+
+
+def limited(x, most):
+    return max(-most, min(most, x))
 
 
 def turn_to(angle):
@@ -102,6 +136,8 @@ class Player:
         self.attacks_positive_x = self.team == "cyan"
         self.heading = 0.0
         self.ball, self.goals = Memory(0.8), {"goal_cyan": Memory(1.0), "goal_magenta": Memory(1.0)}
+        self.robots = []
+        self.news = {}  # by number of a team-mate: when it spoke, and how far it was from the ball
 
     def learn(self, state):
         """What the referee says: whether the ball may be played, whose set piece it is, and which way the team plays."""
@@ -111,7 +147,30 @@ class Player:
             if team["name"] == self.team:
                 self.attacks_positive_x = team["attacks_positive_x"]
 
+    def tell(self, now_s):
+        """What the others of the team should know; nothing without a ball."""
+        ball = self.ball.at(now_s)
+        return "%s %d %.2f" % (self.team, self.number, ball[1]) if ball and not self.has_taken() else ""
+
+    def hear(self, now_s, text):
+        """Everybody hears everybody: what is not from the own team is passed over."""
+        words = text.split()
+        if len(words) == 3 and words[0] == self.team:
+            try:
+                self.news[int(words[1])] = now_s, float(words[2])
+            except ValueError:
+                pass
+
+    def is_nearest(self, now_s, distance):
+        return all((distance, self.number) < (other, number) for number, (heard_s, other) in self.news.items()
+                   if now_s - heard_s < NEWS_S and number not in (KEEPER, self.number))
+
+    def has_taken(self):
+        """Whether it may not touch the ball again before another robot has."""
+        return self.is_ours and self.number == TAKER and self.in_play and self.set_piece not in ("", "dropped_ball")
+
     def look(self, now_s, objects):
+        self.robots = [(each["bearing"], each["range"]) for each in objects if each["label"] == "robot"]
         for thing in sorted(objects, key=lambda each: -each["range"]):
             # The eye is high above the ball: along the ground it is nearer than its range.
             sight = thing["bearing"], thing["range"] * math.cos(thing["elevation"])
@@ -127,12 +186,18 @@ class Player:
         if self.phase == "stopped":
             return STAND, False, 0.0
         if self.number == KEEPER:
-            return self.keep(ball, home), True, 0.0
+            if ball and ball[1] < REACH_M and self.phase == "running" and self.in_play:
+                return (0.0, 0.0, 2.0 * ball[0]), False, KICK_IMPULSE
+            return self.keep(ball, home), False, 0.0
         if self.is_ours and self.number == TAKER and self.set_piece not in ("", "dropped_ball"):
             return self.take(ball, goal)
         if self.phase == "preparing" or not self.in_play:
             return self.keep_off(ball, goal, home), False, 0.0
-        velocity, hold, kick = play(self.number, ball, goal)
+        if ball is None:
+            return (0.0, 0.0, 1.5), False, 0.0
+        if not self.is_nearest(now_s, ball[1]):
+            return support(self.number, ball, home), False, 0.0
+        velocity, hold, kick = play(ball, goal, self.robots)
         return velocity, hold, KICK_IMPULSE if kick else 0.0
 
     def goal(self, now_s, at_positive_x):
@@ -141,14 +206,17 @@ class Player:
         return seen or (turn_to((0.0 if at_positive_x else math.pi) - self.heading), FAR_M)
 
     def keep(self, ball, home):
-        """Of the goalkeeper: near its goal, towards the ball."""
-        if home[1] > HOME_M:
-            return towards(home)
-        return (0.0, 0.0, 2.0 * ball[0]) if ball else STAND
+        """Of the goalkeeper: before its goal, on the line to the ball."""
+        if ball is None:
+            return towards(home) if home[1] > 1.5 * HOME_M else STAND
+        ball_x, ball_y = vector(ball)
+        home_x, home_y = vector(home)
+        away = max(0.01, math.hypot(ball_x - home_x, ball_y - home_y))
+        return to_point(home_x + HOME_M * (ball_x - home_x) / away, home_y + HOME_M * (ball_y - home_y) / away, ball[0])
 
     def take(self, ball, goal):
         """A set piece of ours: behind the ball; then a tap, and nothing more until somebody else has touched it."""
-        if self.in_play:
+        if self.has_taken():
             return STAND, False, 0.0
         if ball is None:
             return (0.0, 0.0, 1.5), False, 0.0
@@ -164,7 +232,7 @@ class Player:
         off_m = OFF_OURS_M if self.is_ours else OFF_M
         if ball and ball[1] < off_m:
             return away_from(ball)
-        if self.is_ours and self.number == STRIKER and ball and ball[1] > off_m + 0.3:
+        if self.is_ours and self.number == TAKER - 1 and ball and ball[1] > off_m + 0.3:
             return towards(ball)
         if self.set_piece == "kickoff" and home[1] > goal[1] - 2.0:
             return towards(home)
@@ -172,27 +240,34 @@ class Player:
 
 
 def main():
-    from sandlot_client import Robot
+    from sandlot_client import Robot, data_of, packet
     with Robot() as robot:
         has_referee = "/" + robot.name + "/referee/state" in robot.topics()
         player = Player(robot.name, has_referee)
         eye, compass = robot.subscribe("eye/objects"), robot.subscribe("compass")
+        now_s, spoken_s = 0.0, 0.0
+        robot.subscribe("radio", lambda message: player.hear(now_s, data_of(message).decode("ascii", "ignore")))
         state = robot.subscribe("referee/state") if has_referee else None
         holds = None
         for step in robot.steps():
+            now_s = step.time_s
             if state is not None and state.fresh():
                 player.learn(state.message)
             if compass.fresh():
                 player.heading = compass.message["data"]
             if eye.fresh():
-                player.look(step.time_s, eye.message["objects"])
-            (ahead, left, turn), hold, impulse = player.decide(step.time_s)
+                player.look(now_s, eye.message["objects"])
+            (ahead, left, turn), hold, impulse = player.decide(now_s)
             robot.command("drive", {"linear": {"x": ahead, "y": left}, "angular": {"z": turn}})
             if hold != holds:
                 robot.command("handler", {"data": 1.0 if hold else 0.0})
                 holds = hold
             if impulse > 0:
                 robot.command("kicker", {"data": impulse})
+            news = player.tell(now_s)
+            if news and now_s - spoken_s > 0.19:
+                robot.command("radio", packet(news.encode()))
+                spoken_s = now_s
 
 
 if __name__ == "__main__":
