@@ -50,13 +50,13 @@ class SoccerTeam(unittest.TestCase):
         one = player.Player("cyan2")
         one.learn(state("running"))
         one.look(1.0, [{"label": "ball", "bearing": 0, "range": 4, "elevation": 0.0}, {"label": "goal_cyan", "bearing": math.pi, "range": 6, "elevation": 0.0}])
-        self.assertEqual(one.tell(1.0), "cyan 2 4.00")
+        self.assertEqual(one.tell(1.0), "4.00")
         goes = one.decide(1.0)
         self.assertGreater(goes[0][0], 2)
-        for text in ("magenta 3 1.0", "cyan 3 5.0", "cyan 1 0.5", "cyan 2 1.0", "cyan x y", "", "cyan 3"):
-            one.hear(1.0, text)
-            self.assertEqual(one.decide(1.0), goes, text)
-        one.hear(1.0, "cyan 3 3.5")
+        for packet in (("magenta3", "1.0"), ("cyan3", "5.0"), ("cyan1", "0.5"), ("cyan2", "1.0"), ("cyan4", "y"), ("", "1"), ("cyan3", "")):
+            one.hear(1.0, [packet])
+            self.assertEqual(one.decide(1.0), goes, packet)
+        one.hear(1.0, [("cyan3", "3.5")])
         (ahead, left, _), hold, kick = one.decide(1.0)
         # 3 m from the ball, at 0.8 (2 - 3.5) rad from the direction to the own goal, which is pi.
         x, y = 4 + 3 * math.cos(math.pi - 1.2), 3 * math.sin(math.pi - 1.2)

@@ -148,16 +148,17 @@ class Player:
                 self.attacks_positive_x = team["attacks_positive_x"]
 
     def tell(self, now_s):
-        """What the others of the team should know; nothing without a ball."""
+        """What the others of the team should know: how far the ball is. Nothing where it is not seen, or may not be played."""
         ball = self.ball.at(now_s)
-        return "%s %d %.2f" % (self.team, self.number, ball[1]) if ball and not self.has_taken() else ""
+        return "%.2f" % ball[1] if ball and not self.has_taken() else ""
 
-    def hear(self, now_s, text):
-        """Everybody hears everybody: what is not from the own team is passed over."""
-        words = text.split()
-        if len(words) == 3 and words[0] == self.team:
+    def hear(self, now_s, packets):
+        """Everybody hears everybody: what is not from a team-mate is passed over."""
+        for sender, text in packets:
+            if not re.fullmatch(self.team + r"\d+", sender):
+                continue
             try:
-                self.news[int(words[1])] = now_s, float(words[2])
+                self.news[int(sender[len(self.team):])] = now_s, float(text)
             except ValueError:
                 pass
 
@@ -245,12 +246,13 @@ def main():
         has_referee = "/" + robot.name + "/referee/state" in robot.topics()
         player = Player(robot.name, has_referee)
         eye, compass = robot.subscribe("eye/objects"), robot.subscribe("compass")
-        now_s, spoken_s = 0.0, 0.0
-        robot.subscribe("radio", lambda message: player.hear(now_s, data_of(message).decode("ascii", "ignore")))
+        radio, spoken_s = robot.subscribe("radio"), 0.0
         state = robot.subscribe("referee/state") if has_referee else None
         holds = None
         for step in robot.steps():
             now_s = step.time_s
+            if radio.fresh():
+                player.hear(now_s, [(each["from"], data_of(each).decode("ascii", "ignore")) for each in radio.message["packets"]])
             if state is not None and state.fresh():
                 player.learn(state.message)
             if compass.fresh():

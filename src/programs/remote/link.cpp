@@ -1,11 +1,13 @@
 #include "programs/remote/link.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sandlot::programs::remote {
 
 void Link::attach(Client client) {
   const std::lock_guard lock(mutex_);
+  if (client.claim <= ended_claim_) return;
   client_ = std::move(client);
   ++attachments_;
   if (step_ && client_->counts) ++client_->counts->steps;
@@ -15,9 +17,10 @@ void Link::attach(Client client) {
   tell();
 }
 
-void Link::detach(std::string why) {
+void Link::detach(std::uint64_t claim, std::string why) {
   const std::lock_guard lock(mutex_);
-  if (!client_) return;
+  ended_claim_ = std::max(ended_claim_, claim);
+  if (!client_ || client_->claim > claim) return;
   client_.reset();
   if (step_ && !answer_) answer_ = Error{std::move(why)};
 }

@@ -42,10 +42,12 @@ class Link {
     std::function<void(const Step&)> step;
     std::function<void(const std::string& why)> refused;  ///< its answer could not be carried out
     std::shared_ptr<Counts> counts = {};                  ///< of this client; null: nobody wants them
+    std::uint64_t claim = 0;                              ///< grows from claim to claim
   };
-  /// A client takes the program over. It is told at once of a step that waits.
+  /// A client takes the program over. It is told at once of a step that waits. One whose claim has ended meanwhile is passed over.
   void attach(Client client);
-  void detach(std::string why);
+  /// The claim and those before it have ended, on any thread, even before their client was attached.
+  void detach(std::uint64_t claim, std::string why);
   /// Nobody comes any more, such as a process that has ended for good: nobody is waited for. An attachment takes it back.
   void give_up();
   /// Errors: no step waits for an answer, another one does, it is too long.
@@ -73,7 +75,7 @@ class Link {
 
   mutable std::mutex mutex_;
   std::optional<Client> client_;
-  std::uint64_t attachments_ = 0;
+  std::uint64_t attachments_ = 0, ended_claim_ = 0;
   std::optional<Step> step_;  ///< that waits for its answer
   bool told_ = false, given_up_ = false;
   std::optional<Result<std::string>> answer_;

@@ -175,7 +175,7 @@ void Hub::hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> 
   for (const ProgramLink& each : client->claim->links) told.push_back(each.program);
   if (claimed) claimed(*client->face, std::move(told));
   for (const ProgramLink& each : client->claim->links) {
-    post([feed = feed_, mailbox = mailbox_, id, path = each.program.path, link = each.link,
+    post([feed = feed_, mailbox = mailbox_, id, claim, path = each.program.path, link = each.link,
           deadline_s = client->claim->request.deadline_s,
           counts = roster_.answers_for(id, each.program.path, each.program.control_period_s,
                                        each.longest_deadline_s)](Session&) {
@@ -188,7 +188,7 @@ void Hub::hold_links(ClientId id, std::uint64_t claim, std::vector<ProgramLink> 
                     [mailbox, id](const std::string& why) {
                       mailbox->push([id, why](Hub& hub) { hub.report_refusal(id, why); });
                     },
-                    counts});
+                    counts, claim});
     });
   }
   session_.wake();
@@ -279,7 +279,7 @@ void Hub::end_claim(ClientId id, Client& client, const std::string& why) {
 
 void Hub::let_go(ClientId id, Client& client, const std::string& why) {
   for (const ProgramLink& each : client.claim->links) {
-    each.link->detach(why);
+    each.link->detach(client.claim->number, why);
     post([feed = feed_, link = each.link](Session&) { feed->remove_link(link); });
   }
   if (!client.claim->request.lockstep) stop_robots(id, client);
