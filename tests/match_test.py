@@ -17,7 +17,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SANDLOT = os.environ.get("SANDLOT_BIN", os.path.join(ROOT, "build/sandlot"))
 SHORT = ["--level", "world", "--drive", "ideal", "--physics", "planar", "--size", "12x8"]
 for key, value in (("players", "2"), ("break", "0.5"), ("rules[0].stop_time", "0.1"), ("rules[0].prepare_min", "0.1"),
-                   ("rules[0].prepare_max", "0.5")):
+                   ("rules[0].prepare_max", "0.5"), ("rules[0].prepare_kickoff", "0.5")):
     SHORT += ["--set", key + "=" + value]
 OURS = "teams/run_and_kick"
 

@@ -8,37 +8,47 @@ import math
 import re
 
 REACH_M = 0.42      # the ball is between the arms
+HELD = (0.0, 0.335) # where the handler holds it. The eye does not see a ball this near: the handler says that it is there
 NEAR_M = 0.9        # from a ball, that only its arms should touch
+ROBOT_M = 0.65      # from a robot: nearer would be pushing
 SPEED_MPS = 2.8
+SPEED_MPS2, TURN_RADPS2 = 2.5, 12.0  # the handler holds a ball no faster than that
 TURN_RADPS = 4.0
-TURN_WITH_BALL_RADPS = 1.5
+TURN_WITH_BALL_RADPS = 2.0
 OFF_M = 3.3         # from a ball that the other team puts into play
+OFF_GOAL_M = 5.0    # from the goal at a penalty kick
 OFF_OURS_M = 2.3    # that a team-mate puts into play
 SUPPORT_M = 3.0     # from the ball: where those wait who do not run after it
-SHOT_M = 7.0        # from the goal; farther away a kick need not be so exact: it is a pass to the front
+SHOT_M = 12.0       # from the goal; farther away a kick need not be so exact: it is a pass to the front
 AIM_FAR = 0.25      # rad
 CORNER_M = 0.75     # from the middle of the goal: where shots go that pass a robot before it
 KICK_IMPULSE = 4.0  # N s: a ball of 0.43 kg leaves with 9 m/s
 TAP_IMPULSE = 0.8   # N s, to take a set piece: another one runs after the ball
+TAKE_MPS = 0.6      # to the ball of a set piece
 WAIT_M = 0.8        # from the ball, until a set piece may be taken
 HOME_M = 1.0        # the keeper's distance from the middle of its goal
+KEEPER_M = 1.5      # from the goal: a ball nearer belongs to the keeper
 FAR_M = 20.0        # of a goal that is not seen: where the compass says
 NEWS_S = 0.5        # how long what a team-mate said by radio counts
-KEEPER, TAKER = 1, 3
+KEEPER = 1
 STAND = (0.0, 0.0, 0.0)
 
 
-def play(ball, goal, robots=()):
+def play(ball, goal, robots=(), rolls=(0.0, 0.0)):
     """What the robot does that has the ball, or is the nearest of its team to it.
 
     ball, goal, robots: (bearing [rad], range [m]) seen from the robot
+    rolls: velocity of the ball, ahead and to the left of the robot [m/s]
     @return (ahead [m/s], left [m/s], turn [rad/s]), whether to hold the ball, whether to kick
     """
     bearing, distance = ball
     if distance < NEAR_M and abs(bearing) > 0.6:
         return (0.0, 0.0, limited(5.0 * bearing, TURN_RADPS)), True, False
     if distance > REACH_M or abs(bearing) > 0.3:
-        return towards(ball), True, False
+        ahead, left, turn = towards(ball)
+        ahead, left = ahead + rolls[0], left + rolls[1]
+        share = min(1.0, SPEED_MPS / max(0.01, math.hypot(ahead, left)))
+        return (share * ahead, share * left, turn), True, False
     aim = free_corner(goal, robots)
     if abs(aim) < (AIM_FAR if goal[1] > SHOT_M else math.atan2(0.4, goal[1])):
         return (1.0, 0.0, 2.0 * aim), False, True
@@ -58,7 +68,12 @@ def support(number, ball, home):
     ball_x, ball_y = vector(ball)
     home_x, home_y = vector(home)
     angle = math.atan2(home_y - ball_y, home_x - ball_x) + 0.8 * (number - 3.5)
-    return to_point(ball_x + SUPPORT_M * math.cos(angle), ball_y + SUPPORT_M * math.sin(angle), ball[0])
+    x, y = ball_x + SUPPORT_M * math.cos(angle), ball_y + SUPPORT_M * math.sin(angle)
+    from_home = math.hypot(x - home_x, y - home_y)
+    if from_home < SUPPORT_M:  # the goal area belongs to the keeper
+        out = (SUPPORT_M - from_home) / max(0.01, from_home)
+        x, y = x + out * (x - home_x), y + out * (y - home_y)
+    return to_point(x, y, ball[0])
 
 
 def behind(ball, goal, gap_m=0.0):
@@ -86,13 +101,14 @@ def to_point(x, y, look):
     gap = math.hypot(x, y)
     if gap < 0.1:
         return 0.0, 0.0, limited(3.0 * look, TURN_RADPS)
-    speed = min(SPEED_MPS, 0.3 + 1.2 * gap) / gap
+    speed = min(SPEED_MPS, 0.2 + braking(gap)) / gap
     return speed * x, speed * y, limited(3.0 * look, TURN_RADPS)
 
 
 def towards(sight):
-    """To what was seen there."""
-    return to_point(*vector(sight), sight[0])
+    """To what was seen there, so that it ends up between the arms."""
+    gap = max(0.1, sight[1] - HELD[1])
+    return to_point(*vector((sight[0], gap)), sight[0])
 
 
 def away_from(sight):
@@ -100,8 +116,43 @@ def away_from(sight):
     return -math.cos(sight[0]), -math.sin(sight[0]), 0.0
 
 
+def braking(gap_m):
+    """The speed from which it stops within the gap."""
+    return math.sqrt(max(0.0, 1.4 * SPEED_MPS2 * gap_m))
+
+
+def past(velocity, things, gap_m):
+    """The velocity, but around things (bearing, range) that it would bring nearer than gap_m."""
+    ahead, left, turn = velocity
+    for bearing, distance in things:
+        x, y = math.cos(bearing), math.sin(bearing)
+        too_fast = ahead * x + left * y - braking(distance - gap_m)
+        if too_fast > 0:
+            side = too_fast if left * x - ahead * y > 0 else -too_fast
+            ahead, left = ahead - too_fast * x - side * y, left - too_fast * y + side * x
+    return ahead, left, turn
+
+
+def smooth(before, velocity, seconds):
+    """The velocity, as near as the accelerations allow."""
+    ahead, left, turn = (x - y for x, y in zip(velocity, before))
+    most = SPEED_MPS2 * seconds
+    share = min(1.0, most / max(1e-9, math.hypot(ahead, left)))
+    return before[0] + share * ahead, before[1] + share * left, before[2] + limited(turn, TURN_RADPS2 * seconds)
+
+
 def vector(sight):
     return sight[1] * math.cos(sight[0]), sight[1] * math.sin(sight[0])
+
+
+def apart(one, other):
+    """Distance of two things seen [m]."""
+    (x, y), (u, v) = vector(one), vector(other)
+    return math.hypot(x - u, y - v)
+
+
+def turned(x, y, angle):
+    return x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)
 
 
 def limited(x, most):
@@ -126,6 +177,43 @@ class Memory:
         return self.sight if now_s - self.seen_s <= self.kept_s else None
 
 
+class Ball:
+    """Where the ball is and how it rolls, from noisy sights of it. Offsets from the robot along the axes of the compass."""
+    KEPT_S = 1.0  # without a sight
+
+    def __init__(self):
+        self.seen_s, self.at_s = -math.inf, 0.0
+        self.x = self.y = self.vx = self.vy = 0.0
+
+    def move(self, now_s, heading, velocity):
+        """Time goes on, in which the robot has moved at (ahead, left, turn)."""
+        dt, self.at_s = now_s - self.at_s, now_s
+        east, north = turned(velocity[0], velocity[1], heading)
+        self.x += (self.vx - east) * dt
+        self.y += (self.vy - north) * dt
+        slower = max(0.0, 1.0 - 0.25 * dt)
+        self.vx, self.vy = slower * self.vx, slower * self.vy
+
+    def see(self, now_s, heading, sight):
+        x, y = turned(*vector(sight), heading)
+        if now_s - self.seen_s > self.KEPT_S or math.hypot(x - self.x, y - self.y) > 0.5 + 0.2 * sight[1]:
+            self.x, self.y, self.vx, self.vy = x, y, 0.0, 0.0
+        else:
+            self.vx, self.vy = self.vx + 2.5 * (x - self.x), self.vy + 2.5 * (y - self.y)
+            self.x, self.y = self.x + 0.45 * (x - self.x), self.y + 0.45 * (y - self.y)
+        self.seen_s = now_s
+
+    def sight(self, now_s, heading):
+        """Bearing and range; None where it has not been seen for a while."""
+        if now_s - self.seen_s > self.KEPT_S:
+            return None
+        return turn_to(math.atan2(self.y, self.x) - heading), math.hypot(self.x, self.y)
+
+    def rolls(self, heading):
+        """Its velocity in the robot's frame [m/s]."""
+        return turned(self.vx, self.vy, -heading)
+
+
 class Player:
     """What the robot knows of the game."""
 
@@ -135,21 +223,22 @@ class Player:
         self.phase, self.set_piece, self.is_ours, self.in_play = "stopped" if has_referee else "running", "", False, True
         self.attacks_positive_x = self.team == "cyan"
         self.heading = 0.0
-        self.ball, self.goals = Memory(0.8), {"goal_cyan": Memory(1.0), "goal_magenta": Memory(1.0)}
-        self.robots = []
+        self.ball, self.goals = Ball(), {"goal_cyan": Memory(1.0), "goal_magenta": Memory(1.0)}
+        self.robots, self.holds, self.took = [], False, False
         self.news = {}  # by number of a team-mate: when it spoke, and how far it was from the ball
 
     def learn(self, state):
         """What the referee says: whether the ball may be played, whose set piece it is, and which way the team plays."""
         self.phase, self.set_piece, self.in_play = state["phase"], state["set_piece"], state["in_play"]
         self.is_ours = state["team"] == self.team
+        self.took = self.took and self.phase == "running" and self.set_piece != ""
         for team in state["teams"]:
             if team["name"] == self.team:
                 self.attacks_positive_x = team["attacks_positive_x"]
 
     def tell(self, now_s):
         """What the others of the team should know: how far the ball is. Nothing where it is not seen, or may not be played."""
-        ball = self.ball.at(now_s)
+        ball = self.sight_of_ball(now_s)
         return "%.2f" % ball[1] if ball and not self.has_taken() else ""
 
     def hear(self, now_s, packets):
@@ -167,39 +256,51 @@ class Player:
                    if now_s - heard_s < NEWS_S and number not in (KEEPER, self.number))
 
     def has_taken(self):
-        """Whether it may not touch the ball again before another robot has."""
-        return self.is_ours and self.number == TAKER and self.in_play and self.set_piece not in ("", "dropped_ball")
+        """Whether it has played a set piece and may not touch the ball again before another robot has."""
+        return self.took and self.in_play
+
+    def sight_of_ball(self, now_s):
+        return HELD if self.holds else self.ball.sight(now_s, self.heading)
+
+    def feel(self, now_s, engaged):
+        """What the handler says: whether it has the ball."""
+        self.holds = engaged
+        if engaged:
+            self.ball.see(now_s, self.heading, HELD)
 
     def look(self, now_s, objects):
-        self.robots = [(each["bearing"], each["range"]) for each in objects if each["label"] == "robot"]
+        self.robots = [(each["bearing"], each["range"] * math.cos(each["elevation"])) for each in objects if each["label"] == "robot"]
         for thing in sorted(objects, key=lambda each: -each["range"]):
             # The eye is high above the ball: along the ground it is nearer than its range.
             sight = thing["bearing"], thing["range"] * math.cos(thing["elevation"])
-            if thing["label"] == "ball":
-                self.ball.see(now_s, sight)
+            if thing["label"] == "ball" and not self.holds:
+                self.ball.see(now_s, self.heading, sight)
             elif thing["label"] in self.goals:
                 self.goals[thing["label"]].see(now_s, sight)
 
     def decide(self, now_s):
         """@return velocity as of play(), whether to hold the ball, impulse of the kick [N s]"""
-        ball = self.ball.at(now_s)
+        ball = self.sight_of_ball(now_s)
         goal, home = self.goal(now_s, self.attacks_positive_x), self.goal(now_s, not self.attacks_positive_x)
         if self.phase == "stopped":
             return STAND, False, 0.0
-        if self.number == KEEPER:
-            if ball and ball[1] < REACH_M and self.phase == "running" and self.in_play:
-                return (0.0, 0.0, 2.0 * ball[0]), False, KICK_IMPULSE
-            return self.keep(ball, home), False, 0.0
-        if self.is_ours and self.number == TAKER and self.set_piece not in ("", "dropped_ball"):
-            return self.take(ball, goal)
-        if self.phase == "preparing" or not self.in_play:
-            return self.keep_off(ball, goal, home), False, 0.0
-        if ball is None:
-            return (0.0, 0.0, 1.5), False, 0.0
-        if not self.is_nearest(now_s, ball[1]):
-            return support(self.number, ball, home), False, 0.0
-        velocity, hold, kick = play(ball, goal, self.robots)
-        return velocity, hold, KICK_IMPULSE if kick else 0.0
+        takes = self.is_ours and self.set_piece not in ("", "dropped_ball") and not self.in_play
+        if takes and self.number != KEEPER and (ball is None or self.is_nearest(now_s, ball[1])):
+            velocity, hold, impulse = self.take(ball, goal)
+        elif self.phase == "preparing" or not self.in_play:
+            velocity, hold, impulse = self.wait(ball, goal, home), False, 0.0
+        elif self.number == KEEPER:
+            velocity, hold, impulse = self.keep(ball, home), True, KICK_IMPULSE if ball == HELD else 0.0
+        elif self.has_taken():
+            velocity, hold, impulse = STAND, False, 0.0
+        elif ball is None:
+            velocity, hold, impulse = (0.0, 0.0, 1.5), False, 0.0
+        elif self.is_nearest(now_s, ball[1]) and apart(ball, home) > KEEPER_M:
+            velocity, hold, kick = play(ball, goal, self.robots, self.ball.rolls(self.heading))
+            impulse = KICK_IMPULSE if kick else 0.0
+        else:
+            velocity, hold, impulse = support(self.number, ball, home), False, 0.0
+        return past(velocity, self.robots, ROBOT_M), hold, impulse
 
     def goal(self, now_s, at_positive_x):
         """Bearing and range of a goal, by the compass where it is not seen."""
@@ -216,28 +317,33 @@ class Player:
         return to_point(home_x + HOME_M * (ball_x - home_x) / away, home_y + HOME_M * (ball_y - home_y) / away, ball[0])
 
     def take(self, ball, goal):
-        """A set piece of ours: behind the ball; then a tap, and nothing more until somebody else has touched it."""
-        if self.has_taken():
-            return STAND, False, 0.0
+        """A set piece of ours: behind the ball; when the game runs, to it, and a tap."""
         if ball is None:
             return (0.0, 0.0, 1.5), False, 0.0
         if self.phase == "preparing":
-            if ball[1] < WAIT_M - 0.15:
-                return away_from(ball), False, 0.0
-            return behind(ball, goal, WAIT_M), False, 0.0
-        at_ball = ball[1] < REACH_M and abs(ball[0]) < 0.3
-        return behind(ball, goal), False, TAP_IMPULSE if at_ball else 0.0
+            velocity = away_from(ball) if ball[1] < WAIT_M - 0.15 else behind(ball, goal, WAIT_M)
+            return past(velocity, [ball], WAIT_M - 0.2), False, 0.0
+        self.took = self.took or self.holds
+        ahead, left, turn = behind(ball, goal)
+        share = min(1.0, TAKE_MPS / max(0.01, math.hypot(ahead, left)))
+        return (share * ahead, share * left, turn), not self.holds, TAP_IMPULSE if self.holds else 0.0
 
-    def keep_off(self, ball, goal, home):
-        """Away from a ball that is put into play; at a kick-off in the own half."""
-        off_m = OFF_OURS_M if self.is_ours else OFF_M
-        if ball and ball[1] < off_m:
-            return away_from(ball)
-        if self.is_ours and self.number == TAKER - 1 and ball and ball[1] > off_m + 0.3:
-            return towards(ball)
-        if self.set_piece == "kickoff" and home[1] > goal[1] - 2.0:
-            return towards(home)
-        return STAND
+    def wait(self, ball, goal, home):
+        """Away from a ball that is put into play; at a kick-off in the own half, at a penalty kick far from the goal."""
+        if self.number == KEEPER:
+            velocity, off_m = self.keep(ball, home), WAIT_M
+        else:
+            off_m = OFF_OURS_M if self.is_ours else OFF_M
+            velocity = STAND
+            if self.is_ours and self.number <= 3 and ball and ball[1] > off_m + 0.3:
+                velocity = towards(ball)
+            if self.set_piece == "kickoff" and home[1] > goal[1] - 2.0:
+                velocity = towards(home)
+            elif self.set_piece == "penalty" and min(home[1], goal[1]) < OFF_GOAL_M:
+                velocity = away_from(home if home[1] < goal[1] else goal)
+            elif ball and ball[1] < off_m:
+                velocity = away_from(ball)
+        return past(velocity, [ball], off_m) if ball else velocity
 
 
 def main():
@@ -246,20 +352,26 @@ def main():
         has_referee = "/" + robot.name + "/referee/state" in robot.topics()
         player = Player(robot.name, has_referee)
         eye, compass = robot.subscribe("eye/objects"), robot.subscribe("compass")
+        handler = robot.subscribe("handler")
         radio, spoken_s = robot.subscribe("radio"), 0.0
         state = robot.subscribe("referee/state") if has_referee else None
-        holds = None
+        holds, velocity, before_s = None, STAND, 0.0
         for step in robot.steps():
             now_s = step.time_s
+            player.ball.move(now_s, player.heading, velocity)
             if radio.fresh():
                 player.hear(now_s, [(each["from"], data_of(each).decode("ascii", "ignore")) for each in radio.message["packets"]])
             if state is not None and state.fresh():
                 player.learn(state.message)
             if compass.fresh():
                 player.heading = compass.message["data"]
+            if handler.fresh():
+                player.feel(now_s, handler.message["engaged"])
             if eye.fresh():
                 player.look(now_s, eye.message["objects"])
-            (ahead, left, turn), hold, impulse = player.decide(now_s)
+            wanted, hold, impulse = player.decide(now_s)
+            velocity, before_s = smooth(velocity, wanted, now_s - before_s), now_s
+            ahead, left, turn = velocity
             robot.command("drive", {"linear": {"x": ahead, "y": left}, "angular": {"z": turn}})
             if hold != holds:
                 robot.command("handler", {"data": 1.0 if hold else 0.0})

@@ -294,7 +294,8 @@ void Referee::step_preparing() {
   if (state_.waits_for_person || state_.phase_s < rules_.prepare_min_s) return;
   const Violation wrong = violation(scene(), false);
   if (!wrong.who && all_stand(scene())) return start(false);
-  if (state_.phase_s < rules_.prepare_max_s) return;
+  const bool kickoff = state_.piece == SetPiece::kickoff;
+  if (state_.phase_s < (kickoff ? rules_.prepare_kickoff_s : rules_.prepare_max_s)) return;
   if (wrong.who && (state_.retakes < rules_.retakes || changes_sides(wrong))) return violated(wrong);
   start(true);
 }

@@ -41,7 +41,8 @@ TEST(SoccerSetPieces, AKickOffIsStoppedPreparedStartedAndInPlayWithin20cm) {
 TEST(SoccerSetPieces, WaitForMovingRobotsUntilTheTimeIsOver) {
   Match match;
   match.robot(mate1).velocity_mps = {0.5, 0, 0};
-  match.run(match.rules.stop_s + match.rules.prepare_max_s - 0.2);
+  match.run(match.rules.stop_s + match.rules.prepare_kickoff_s -
+            0.2);  // longer than that of other set pieces
   EXPECT_EQ(match.state.phase, Phase::preparing);
   match.run(0.6);
   EXPECT_EQ(match.state.phase, Phase::running);

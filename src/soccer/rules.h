@@ -15,7 +15,8 @@ struct Rules {
   // Teams
   int players = 5, goalkeeper = 1, substitutions = 3;
   // Set pieces
-  double stop_s = 2, prepare_min_s = 2, prepare_max_s = 10, take_s = 7, penalty_s = 10;
+  double stop_s = 2, prepare_min_s = 2, prepare_max_s = 10, prepare_kickoff_s = 20, take_s = 7,
+         penalty_s = 10;
   double in_play_m = 0.2, opponents_m = 3, teammates_m = 2, dropped_ball_m = 1, tolerance_m = 0.1;
   double ready_mps = 0.15;
   int retakes = 2;
@@ -56,6 +57,10 @@ struct Rules {
     visit(Field{"prepare_max", "s", "Time after which a set piece starts although robots are not ready.", 0,
                 1000},
           s.prepare_max_s);
+    visit(
+        Field{"prepare_kickoff", "s",
+              "The same of a kick-off, to which robots may come from the other side of the field.", 0, 1000},
+        s.prepare_kickoff_s);
     visit(Field{"take_time", "s", "Time after which a ball that nobody moved is in play.", 0.1, 1000},
           s.take_s);
     visit(Field{"penalty_time", "s", "Time to take a penalty kick.", 0.1, 1000}, s.penalty_s);

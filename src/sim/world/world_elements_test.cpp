@@ -293,8 +293,9 @@ model::Setup everything() {
   goals.set("goals", list({map({{"marker", "right"}})}));
   goals.set("place", numbers({0, 0, 0.1}));
   setup.rules.push_back(element("goals", goals));
-  setup.rules.push_back(
-      element("referee", map({{"stop_time", "0.1"}, {"prepare_max", "0.2"}, {"take_time", "0.1"}})));
+  setup.rules.push_back(element(
+      "referee",
+      map({{"stop_time", "0.1"}, {"prepare_max", "0.2"}, {"prepare_kickoff", "0.2"}, {"take_time", "0.1"}})));
   setup.rules.push_back(element("impact", map({{"threshold", "0.001"}})));
   setup.rules.push_back(element("place", with(map({{"object", "ball"}, {"when", "ball.pose.x > 0.4"}}),
                                               "place", numbers({2, 0, 0.1}))));
