@@ -95,6 +95,29 @@ class Play(Match):
             self.assertEqual(len(each["players"]), 4, each)
             self.assertTrue(each["reason"])
 
+    def test_a_recording_is_shown_from_any_of_its_decisions(self):
+        recording = self.file("match.mcap")
+        self.play("teams/passing", OURS, "--duration", "3 s", "--record", recording)
+        half = next(each for each in (json.loads(line) for line in self.sandlot(
+            "topic", "echo", recording, "/rules/referee/decision", "--json").stdout.splitlines()) if each["message"]["rule"] == "half_time")
+        from_s = "%.2fs" % half["time"]
+        there = json.loads(self.sandlot("replay", recording, "--until", from_s, "--json").stdout)
+        shown = subprocess.Popen([SANDLOT, "replay", recording, "--port", "0", "--from", from_s], cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.addCleanup(shown.stdout.close)
+        self.addCleanup(shown.wait)
+        self.addCleanup(shown.kill)
+        address = re.search(r"http://([0-9.:]+)/", next(line for line in shown.stdout if "page:" in line)).group(1)
+
+        def say(line):
+            return json.loads(self.sandlot("console", address, "--command", line, "--json").stdout)["text"]
+        until = time.monotonic() + 60
+        while "paused" not in say("time") and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertIn("tick %d, paused" % there["end_tick"], say("time"))
+        self.assertIn(there["state_hash"], say("hash"))
+        past = self.sandlot("replay", recording, "--port", "0", "--from", "100s", code=2)
+        self.assertIn("--from 100 s: ", past.stderr)
+
     def test_sides_are_exchanged_and_threads_change_nothing(self):
         one = self.play("teams/passing", OURS, "--duration", "3 s")
         self.assertEqual(self.play("teams/passing", OURS, "--duration", "3 s", "--threads", "2")["state_hash"], one["state_hash"])

@@ -1,5 +1,6 @@
 #include "app/verbs/list/sections.h"
 
+#include "app/papers/papers.h"
 #include "assets/mesh/mesh.h"
 #include "builders/builder.h"
 #include "formats/kind.h"
@@ -149,6 +150,13 @@ std::vector<Section> sections(std::span<const ControllerKind* const> controller_
     builders.items.push_back({builder->name, builder->help, builder->describe(), {}, {}, {}});
   out.push_back(std::move(builders));
   out.push_back(format_section());
+  Section reproduced{"papers",
+                     "Papers",
+                     "Publications whose experiments `sandlot reproduce NAME` makes again as a page.",
+                     {}};
+  for (const Paper& paper : papers())
+    reproduced.items.push_back({paper.name, std::string(paper.title) + ".", {}, {}, {}});
+  out.push_back(std::move(reproduced));
   return out;
 }
 
