@@ -10,7 +10,8 @@ namespace sandlot::test {
 namespace {
 
 // The referee's times (soccer/rules.h), and half a second for what ends with the next message.
-constexpr double stop_s = 2, prepare_s = 10, take_s = 7, penalty_s = 10, slack_s = 0.5;
+constexpr double stop_s = 2, prepare_s = 10, prepare_kickoff_s = 20, take_s = 7, penalty_s = 10,
+                 slack_s = 0.5;
 constexpr int retakes = 2;
 
 struct Decision {
@@ -42,12 +43,16 @@ void expect_restarts_in_time(const std::vector<Decision>& decisions, double end_
   double since_s = 0;
   int repeated = 0;
   std::string piece = "KICKOFF";
+  // After a goal there is a kick-off.
+  const auto prepared_s = [&] {
+    return piece == "KICKOFF" || piece == "GOAL" ? prepare_kickoff_s : prepare_s;
+  };
   for (const Decision& each : decisions) {
     const double t = each.t_s - since_s;
     SCOPED_TRACE(each.rule + " at " + std::to_string(each.t_s) + " s");
     if (each.rule == "start") {
       EXPECT_EQ(phase, stopped);
-      EXPECT_LE(t, stop_s + prepare_s + slack_s) << "the set piece is not started in time";
+      EXPECT_LE(t, stop_s + prepared_s() + slack_s) << "the set piece is not started in time";
       phase = piece == "DROP_BALL" ? playing : started;
       since_s = each.t_s;
     } else if (each.rule == "in_play" || each.rule == "not_taken") {
@@ -67,7 +72,7 @@ void expect_restarts_in_time(const std::vector<Decision>& decisions, double end_
       piece = each.command;
     }
   }
-  if (phase == stopped) { EXPECT_LE(end_s - since_s, stop_s + prepare_s + slack_s); }
+  if (phase == stopped) { EXPECT_LE(end_s - since_s, stop_s + prepared_s() + slack_s); }
   if (phase == started) { EXPECT_LE(end_s - since_s, penalty_s + slack_s); }
 }
 
