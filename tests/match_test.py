@@ -212,12 +212,21 @@ class Programs(Match):
         self.assertEqual(result["summary"]["errors"], [])
 
     def test_a_program_that_crashes_midway_leaves_the_game_to_the_others(self):
+        # 75 steps of 3 s and those of the break: what it does not answer after its 20th counts as missed.
         crash = self.program_team("Crash", "import os\n" + ANSWERS % "os.abort() if step.number > 20 else None",
                                   "deadline: 0.5 s, restart: never")
         done = self.sandlot("match", OURS, crash, *SHORT, "--duration", "3 s", "--json")
         result = json.loads(done.stdout)
         self.assertTrue(result["ended"])
         self.assertRegex(done.stderr, r"magenta[12]/controller.*signal 6")
+        missed, steps = re.search(r"Crash loses by rule: its programs missed (\d+) of (\d+) steps", result["walk_over"]).groups()
+        self.assertGreater(int(missed) / int(steps), 0.6)
+        self.assertGreaterEqual(int(steps), 2 * 75)
+
+    def test_a_program_that_crashes_once_and_comes_back_has_not_lost(self):
+        once = self.program_team("Once", "import os\n" + ANSWERS % "os.abort() if step.number == 20 else None",
+                                 "deadline: 0.5 s, restart: on_failure")
+        self.assertEqual(self.play(OURS, once, "--duration", "8 s")["walk_over"], "")
 
     def test_nonsense_in_answers_is_counted_and_orders_nothing(self):
         mad = self.program_team("Mad", ANSWERS % "robot.command('drive', {'linear': {'x': float('nan')}}); robot.command('wings', {})")

@@ -62,8 +62,8 @@ int run(const RunOptions& options);
 struct RunWatch {
   /// Before programs are started. Errors: nothing is run.
   std::function<Status(Simulation&)> on_world;
-  /// Some times a second of wall time, with the clients that have come up to now. False: the run ends.
-  std::function<bool(const std::vector<ClientSummary>&)> goes_on;
+  /// Some times a second of wall time. False: the run ends.
+  std::function<bool()> goes_on;
 };
 /// One run, with its server and the programs that it starts. Prints warnings and, where asked for, progress.
 Result<Summary> run_once(const RunOptions& options, bool shows_progress, const RunWatch& watch = {});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -11,6 +12,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "formats/scenario/scenario.h"
+#include "programs/remote/remote.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot::app {
@@ -34,7 +36,13 @@ bool is_of(std::string_view path, std::string_view side) {
   return (digits > 0 || rest.empty()) && (rest.empty() || rest.front() == '/');
 }
 
-/// Steps of the programs of a team that clients were to answer.
+/// A program of a team outside this process.
+struct OutsideProgram {
+  std::string path;
+  std::shared_ptr<const programs::remote::Link> link;
+};
+
+/// Steps of the programs of a team, and those without an answer in time: also those of a program that has crashed.
 struct Steps {
   std::size_t programs = 0, silent = 0;
   std::uint64_t steps = 0, misses = 0;
@@ -44,27 +52,21 @@ struct Steps {
   }
 };
 
-Steps steps_of(const char* side, const std::vector<std::string>& outside,
-               const std::vector<ClientSummary>& clients) {
+Steps steps_of(const char* side, const std::vector<OutsideProgram>& outside) {
   Steps out;
-  for (const std::string& path : outside) {
-    if (!is_of(path, side)) continue;
+  for (const OutsideProgram& each : outside) {
+    if (!is_of(each.path, side)) continue;
+    const std::uint64_t steps = each.link->counts().steps, misses = each.link->counts().misses;
     ++out.programs;
-    bool answered = false;
-    for (const ClientSummary& client : clients) {
-      if (client.drives.empty() || !(path == client.drives || path.starts_with(client.drives + "/")))
-        continue;
-      out.steps += client.steps;
-      out.misses += client.misses;
-      answered = answered || client.steps > client.misses;
-    }
-    out.silent += !answered;
+    out.steps += steps;
+    out.misses += misses;
+    out.silent += steps <= misses + 1;  // the last step may be open still
   }
   return out;
 }
 
 /// Why the team on a side has lost by rule; "": it has not.
-std::string fault_of(const char* side, const std::vector<std::string>& outside, const Summary& summary) {
+std::string fault_of(const char* side, const std::vector<OutsideProgram>& outside, const Summary& summary) {
   for (const std::string& error : summary.errors)
     for (const char* const mark : {"'", "\"", " "})
       if (const auto at = error.find(mark + std::string(side)); at != std::string::npos) {
@@ -72,7 +74,7 @@ std::string fault_of(const char* side, const std::vector<std::string>& outside, 
         if (is_of(from.substr(0, from.find_first_of("'\": ,;")), side))
           return "its software failed: " + error;
       }
-  const Steps all = steps_of(side, outside, summary.clients);
+  const Steps all = steps_of(side, outside);
   if (all.programs == 0) return "";
   if (all.silent == all.programs) return "none of its programs answered";
   if (all.too_late()) return fmt::format("its programs missed {} of {} steps", all.misses, all.steps);
@@ -122,21 +124,22 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
   if (spec.half_s) choose("half", number_text(*spec.half_s));
   run.spec.overrides.insert(run.spec.overrides.begin(), overrides.begin(), overrides.end());
 
-  std::vector<std::string> outside;
+  std::vector<OutsideProgram> outside;
   const RunWatch watch{
       .on_world =
           [&](Simulation& world) {
             Status status;
-            world.for_each_outside([&](const SimulationParts::ProgramEntry& entry, const Outside&) {
-              outside.push_back(entry.path);
+            world.for_each_outside([&](const SimulationParts::ProgramEntry& entry, const Outside& program) {
+              if (const auto* const remote = dynamic_cast<const programs::remote::Remote*>(&program))
+                outside.push_back({entry.path, remote->link()});
               if (status) status = check_time(entry.decl);
             });
             return status;
           },
       .goes_on =
-          [&](const std::vector<ClientSummary>& clients) {
+          [&] {
             return std::none_of(sides.begin(), sides.end(), [&](const char* side) {
-              const Steps all = steps_of(side, outside, clients);
+              const Steps all = steps_of(side, outside);
               return all.steps >= enough_steps && all.too_late();
             });
           }};

@@ -145,7 +145,7 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, const R
             if (shows_progress) progress.update(simulation);
             if (watch.goes_on && served && Clock::now() - looked > std::chrono::milliseconds(200)) {
               looked = Clock::now();
-              if (!watch.goes_on(served->clients())) return false;
+              if (!watch.goes_on()) return false;
             }
             return !interrupted();
           },

@@ -77,11 +77,13 @@ void Link::put(const Step& step) {
 
 void Link::count_step() {
   const std::lock_guard lock(mutex_);
+  ++counts_.steps;
   if (client_ && client_->counts) ++client_->counts->steps;
 }
 
 void Link::count_miss() {
   const std::lock_guard lock(mutex_);
+  ++counts_.misses;
   if (client_ && client_->counts) ++client_->counts->misses;
 }
 

@@ -62,8 +62,10 @@ class Link {
   bool given_up() const;
   /// Counts the clients that came.
   std::uint64_t attachments() const;
+  /// Of all steps, whether or not somebody was attached.
+  const Counts& counts() const { return counts_; }
   void put(const Step& step);
-  /// A control step of the client attached now begins; its answer did not come in time.
+  /// A control step begins; its answer did not come in time.
   void count_step();
   void count_miss();
   void refuse(const std::string& why);
@@ -78,6 +80,7 @@ class Link {
   std::uint64_t attachments_ = 0, ended_claim_ = 0;
   std::optional<Step> step_;  ///< that waits for its answer
   bool told_ = false, given_up_ = false;
+  Counts counts_;
   std::optional<Result<std::string>> answer_;
 };
 
