@@ -487,10 +487,10 @@ TEST(WebSocketClient, StopsReadingWhatNobodyReceives) {
   const auto client = echo.client();
   const auto part = payload(std::string(1'000'000, 'x'));
   for (int i = 0; i < 150; ++i) ASSERT_TRUE(echo.transport->send(echo.last(), {}, part, false, false));
-  // 64 MiB wait in the client and a few in the kernel; the rest stays with the server.
+  // 64 MiB wait in the client, and what the kernel's buffers grow to, up to 40 MB; the rest stays with the server.
   ASSERT_TRUE(soon([&] { return echo.transport->waiting_bytes(echo.last()) < 85'000'000; }));
   ::usleep(200'000);
-  EXPECT_GT(echo.transport->waiting_bytes(echo.last()), 60'000'000u);
+  EXPECT_GT(echo.transport->waiting_bytes(echo.last()), 40'000'000u);
   for (int i = 0; i < 150; ++i) ASSERT_EQ(words_of(client->receive(5)).size(), 1'000'000u) << i;
 }
 
