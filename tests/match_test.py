@@ -226,7 +226,7 @@ class Programs(Match):
     def test_a_program_that_crashes_once_and_comes_back_has_not_lost(self):
         once = self.program_team("Once", "import os\n" + ANSWERS % "os.abort() if step.number == 20 else None",
                                  "deadline: 0.5 s, restart: on_failure")
-        self.assertEqual(self.play(OURS, once, "--duration", "8 s")["walk_over"], "")
+        self.assertEqual(self.play(OURS, once, "--duration", "6 s", "--rate", "1")["walk_over"], "")
 
     def test_nonsense_in_answers_is_counted_and_orders_nothing(self):
         mad = self.program_team("Mad", ANSWERS % "robot.command('drive', {'linear': {'x': float('nan')}}); robot.command('wings', {})")
