@@ -82,7 +82,8 @@ void deviate(const Sensor& sensor, std::size_t first, Matrix6& C) {
 
 /// Whether the covariance of the chosen components is finite, symmetric (within what floats of 32 bits leave) and positive
 /// definite. Rows of others become 0 when they are not finite.
-bool sound_covariance(Matrix6& C, const std::array<bool, 6>& chosen) {
+/// @param may_be_zero  without the last: what is left of it in a difference is checked later
+bool sound_covariance(Matrix6& C, const std::array<bool, 6>& chosen, bool may_be_zero = false) {
   std::array<double, 36> block{};
   std::size_t m = 0;
   std::array<std::size_t, 6> index{};
@@ -90,7 +91,7 @@ bool sound_covariance(Matrix6& C, const std::array<bool, 6>& chosen) {
     if (chosen[i]) index[m++] = i;
   for (std::size_t i = 0; i < m; ++i) {
     const double variance = C[index[i]][index[i]];
-    if (!(variance >= least_variance && variance <= most_variance)) return false;
+    if (!(variance >= (may_be_zero ? 0 : least_variance) && variance <= most_variance)) return false;
   }
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j < m; ++j) {
@@ -99,7 +100,7 @@ bool sound_covariance(Matrix6& C, const std::array<bool, 6>& chosen) {
       if (!(std::abs(a - b) <= 1e-6 * size) || !(std::abs(a) <= 1.000001 * size)) return false;
       block[i * m + j] = 0.5 * (a + b);
     }
-  if (!positive_definite(std::span(block).first(m * m), m)) return false;
+  if (!may_be_zero && !positive_definite(std::span(block).first(m * m), m)) return false;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j)
       if ((!chosen[i] || !chosen[j]) && !(std::abs(C[i][j]) <= most_variance)) C[i][j] = 0;
@@ -208,7 +209,7 @@ Outcome to_samples(const Sensor& sensor, const msg::PoseWithCovariance& pose, Sa
   for (std::size_t i = 0; i < 3; ++i) pose_W.p[i] = sound(pose.pose.p[i]) ? pose.pose.p[i] : 0;
   Matrix6 C = matrix_of(pose.covariance);
   deviate(sensor, Index::X, C);
-  if (!sound_covariance(C, chosen)) return Outcome::bad_covariance;
+  if (!sound_covariance(C, chosen, sensor.differential)) return Outcome::bad_covariance;
   if (!mounted_at_base(sensor)) {
     const Pose X_WB = pose_W * inverse(sensor.mount);
     // The origin of B lies at the end of an arm that turns with the sensor: p_B = p_S + arm, and arm += turn x arm.
@@ -259,7 +260,7 @@ Outcome to_samples(const Sensor& sensor, const msg::Imu& imu, double gravity, Sa
     Matrix6 C{};
     place_block(imu.orientation_covariance, 3, C);
     deviate(sensor, Index::X, C);
-    if (!sound_covariance(C, chosen_of(sensor, Part::pose))) return Outcome::bad_covariance;
+    if (!sound_covariance(C, chosen_of(sensor, Part::pose), sensor.differential)) return Outcome::bad_covariance;
     Sample& sample = next_sample(out, Part::pose);
     sample.value = numbers_of({{}, normalised(imu.orientation) * conjugate(q_BS)});
     sample.covariance = triangle_of(C);
