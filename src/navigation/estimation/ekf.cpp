@@ -12,6 +12,7 @@ namespace {
 
 constexpr Time last_stamp{4'000'000'000'000'000'000};
 constexpr std::size_t most_samples = 4096;
+constexpr double most_core = 1e30;
 constexpr std::int64_t checkpoints_per_history = 8;
 
 constexpr std::array<bool, states> pinned_in_plane = {false, false, true, true,  true,  false, false, false,
@@ -70,11 +71,16 @@ struct Processed {
   std::size_t components = 0;
 };
 
-Processed process(const Spec& spec, const Vector& noise, Core& core, const Sample& given) {
-  const Sensor& sensor = spec.sensors[given.sensor];
-  if (core.known && given.stamp > core.at) predict(core.x, core.P, noise, (given.stamp - core.at).s());
-  core.at = given.stamp, core.sensor = given.sensor, core.part = given.part;
+/// Whether nothing has grown beyond what the next step can take without overflow.
+bool sound_core(const Core& core) {
+  for (std::size_t i = 0; i < states; ++i)
+    if (!(std::abs(core.x[i]) <= most_core) || !(core.P.at(i, i) >= 0 && core.P.at(i, i) <= most_core)) return false;
+  return true;
+}
 
+/// Compares a sample with the estimate at its time, and corrects that.
+Processed correct_by(const Spec& spec, Core& core, const Sample& given) {
+  const Sensor& sensor = spec.sensors[given.sensor];
   Sample sample = given;
   const std::size_t chosen_from = first_index(given.part);
   if (given.part == Part::pose && (sensor.differential || sensor.relative)) {
@@ -133,6 +139,19 @@ Processed process(const Spec& spec, const Vector& noise, Core& core, const Sampl
   if (correction.is == Correction::Is::singular) return {Outcome::bad_covariance};
   return {correction.is == Correction::Is::used ? Outcome::used : Outcome::gated, correction.squared_distance,
           m};
+}
+
+Processed process(const Spec& spec, const Vector& noise, Core& core, const Sample& sample) {
+  if (core.known && sample.stamp > core.at) predict(core.x, core.P, noise, (sample.stamp - core.at).s());
+  core.at = sample.stamp, core.sensor = sample.sensor, core.part = sample.part;
+  Processed result{Outcome::diverged};
+  if (sound_core(core)) result = correct_by(spec, core, sample);
+  if (result.outcome != Outcome::diverged && sound_core(core)) return result;
+  // The next sample begins again.
+  Core first = first_core(spec);
+  first.at = core.at, first.sensor = core.sensor, first.part = core.part;
+  core = std::move(first);
+  return {Outcome::diverged};
 }
 
 void count(State& state, const Sample& sample, const Processed& result, std::vector<Report>* reports) {
@@ -200,13 +219,11 @@ Outcome take(const Spec& spec, State& state, std::size_t sensor, Time stamp, ToS
   return enqueue(state, sensor, stamp, samples);
 }
 
-/// Begins again, and drops what waits for a time that is far ahead now.
-void start_again(const Spec& spec, State& state, Time now) {
+/// Begins again. What waits for a time that is far ahead now is dropped as `early` afterwards.
+void start_again(const Spec& spec, State& state) {
   state.core = first_core(spec);
   state.checkpoints.clear();
   state.history.clear();
-  const Time last = now + Time::from_s(spec.future_s);
-  std::erase_if(state.queue, [&](const Sample& each) { return each.stamp > last; });
   for (SensorRecord& each : state.sensors) each.heard = false;
   ++state.resets;
 }
@@ -365,7 +382,7 @@ void advance(const Spec& spec, State& state, Time now, std::vector<Report>* repo
   SL_CHECK(state.sensors.size() == spec.sensors.size());
   now = std::clamp(now, Time{}, last_stamp);
   if (spec.reset_on_time_jump && state.core.at > now && state.core.at - now > Time::from_s(spec.history_s))
-    start_again(spec, state, now);
+    start_again(spec, state);
   state.now = now;
   if (state.queue.empty()) return;
   const std::size_t first = gather(spec, state, now, reports);
@@ -428,8 +445,8 @@ bool State::fits(const Spec& spec) const {
     return std::all_of(list.begin(), list.end(), [](double each) { return std::isfinite(each); });
   };
   const auto stamped = [](Time at) { return at >= Time{-1} && at <= last_stamp; };
-  const auto sound_core = [&](const Core& each) {
-    if (!stamped(each.at) || !finite(each.x) || !finite(each.P.padded)) return false;
+  const auto complete = [&](const Core& each) {
+    if (!stamped(each.at) || !sound_core(each) || !finite(each.P.padded)) return false;
     if (each.memories.size() != spec.sensors.size()) return false;
     return std::all_of(each.memories.begin(), each.memories.end(), [&](const Memory& memory) {
       return stamped(memory.at) && finite(memory.value) && finite(memory.covariance);
@@ -445,8 +462,8 @@ bool State::fits(const Spec& spec) const {
     return std::is_sorted(list.begin(), list.end(),
                           [](const auto& a, const auto& b) { return order_of(a) < order_of(b); });
   };
-  return sensors.size() == spec.sensors.size() && stamped(now) && sound_core(core) &&
-         std::all_of(checkpoints.begin(), checkpoints.end(), sound_core) && in_order(checkpoints) &&
+  return sensors.size() == spec.sensors.size() && stamped(now) && complete(core) &&
+         std::all_of(checkpoints.begin(), checkpoints.end(), complete) && in_order(checkpoints) &&
          sound_samples(history) && sound_samples(queue) && in_order(history) &&
          (checkpoints.empty() ? history.empty() && !core.known
                               : order_of(checkpoints.back()) < order_of(core)) &&

@@ -115,7 +115,7 @@ struct SensorRecord {
     visit(Field{"newest", "s", "Greatest stamp."}, s.newest);
     visit(Field{"counts", "1",
                 "Measurements queued, used, gated, started, late, early, duplicate, full, unmeasured, with a "
-                "bad stamp, bad value, bad covariance."},
+                "bad stamp, bad value, bad covariance, and those that met a diverged filter."},
           s.counts);
     visit(Field{"last", "", "Outcome of the latest one."}, s.last);
     visit(Field{"squared_distance", "1", "Squared Mahalanobis distance of the latest one compared."},

@@ -116,8 +116,9 @@ enum class Outcome : std::uint8_t {
   bad_stamp,       ///< has a negative stamp or one after the year 2096
   bad_value,       ///< holds a number that is not finite, above 1e9, or no rotation
   bad_covariance,  ///< has a covariance that is not finite, symmetric and positive definite
+  diverged,        ///< met an estimate that had grown beyond bounds: the filter begins again
 };
-inline constexpr std::size_t outcomes = 12;
+inline constexpr std::size_t outcomes = 13;
 inline std::span<const EnumName<Outcome>> enum_names(Outcome) {
   static constexpr EnumName<Outcome> names[] = {
       {"queued", Outcome::queued},         {"used", Outcome::used},
@@ -125,7 +126,8 @@ inline std::span<const EnumName<Outcome>> enum_names(Outcome) {
       {"late", Outcome::late},             {"early", Outcome::early},
       {"duplicate", Outcome::duplicate},   {"full", Outcome::full},
       {"unmeasured", Outcome::unmeasured}, {"bad_stamp", Outcome::bad_stamp},
-      {"bad_value", Outcome::bad_value},   {"bad_covariance", Outcome::bad_covariance}};
+      {"bad_value", Outcome::bad_value},   {"bad_covariance", Outcome::bad_covariance},
+      {"diverged", Outcome::diverged}};
   return names;
 }
 
