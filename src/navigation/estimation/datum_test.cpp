@@ -17,7 +17,8 @@ TEST(Datum, ThereAndBackAgain) {
         for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 2, 3}, Vec3{-5000, 800, 50}, Vec3{90'000, -70'000, 2000}})
           EXPECT_LT(norm(to_world(datum, to_geodetic(datum, p)) - p), 1e-6);
         // One ulp of a longitude of pi is 4e-16 rad: 3e-9 m.
-        EXPECT_LT(norm(to_world(datum, {datum.latitude_rad, datum.longitude_rad, 420}) - datum.offset_m), 1e-8);
+        EXPECT_LT(norm(to_world(datum, {datum.latitude_rad, datum.longitude_rad, 420}) - datum.offset_m),
+                  1e-8);
       }
 }
 
@@ -40,10 +41,12 @@ TEST(Datum, DistancesOnTheEllipsoid) {
   // The whole chord by coordinates: from (48 N, 11 E, 500 m) to (48.01 N, 11.02 E, 620 m).
   const auto ecef = [&](double lat, double lon, double h) {
     const double s = math::sin(lat * deg), c = math::cos(lat * deg), N = a / std::sqrt(1 - e2 * s * s);
-    return Vec3{(N + h) * c * math::cos(lon * deg), (N + h) * c * math::sin(lon * deg), (N * (1 - e2) + h) * s};
+    return Vec3{(N + h) * c * math::cos(lon * deg), (N + h) * c * math::sin(lon * deg),
+                (N * (1 - e2) + h) * s};
   };
   const Vec3 d = ecef(48.01, 11.02, 620) - ecef(48, 11, 500);
-  const double sp = math::sin(48 * deg), cp = math::cos(48 * deg), sl = math::sin(11 * deg), cl = math::cos(11 * deg);
+  const double sp = math::sin(48 * deg), cp = math::cos(48 * deg), sl = math::sin(11 * deg),
+               cl = math::cos(11 * deg);
   const Vec3 enu{-sl * d.x + cl * d.y, -sp * cl * d.x - sp * sl * d.y + cp * d.z,
                  cp * cl * d.x + cp * sl * d.y + sp * d.z};
   const Vec3 p = to_world(Datum{48 * deg, 11 * deg, 500}, {48.01 * deg, 11.02 * deg, 620});

@@ -74,7 +74,8 @@ struct Processed {
 /// Whether nothing has grown beyond what the next step can take without overflow.
 bool sound_core(const Core& core) {
   for (std::size_t i = 0; i < states; ++i)
-    if (!(std::abs(core.x[i]) <= most_core) || !(core.P.at(i, i) >= 0 && core.P.at(i, i) <= most_core)) return false;
+    if (!(std::abs(core.x[i]) <= most_core) || !(core.P.at(i, i) >= 0 && core.P.at(i, i) <= most_core))
+      return false;
   return true;
 }
 
@@ -90,7 +91,8 @@ Processed correct_by(const Spec& spec, Core& core, const Sample& given) {
   const bool has_arm = sensor.kind == SensorKind::gps && !(sensor.mount.p == Vec3{});
   if (has_arm || sample.holds_gravity) {
     const Quat q_WB = quat_from_rpy(core.x[Roll], core.x[Pitch], core.x[Yaw]);
-    const Vec3 less = has_arm ? rotate(q_WB, sensor.mount.p) : rotate_inverse(q_WB, {0, 0, spec.gravity_mps2});
+    const Vec3 less = has_arm ? rotate(q_WB, sensor.mount.p)
+                              : rotate_inverse(q_WB, {0, 0, spec.gravity_mps2});
     for (std::size_t i = 0; i < 3; ++i) sample.value[i] -= less[i];
   }
 
@@ -296,7 +298,8 @@ Status Spec::check(const Node& node, const std::string& path) const {
       return node.error("component " + std::to_string(i) + " has no finite value and variances",
                         "variances in [0, 1e12], values in [-1e9, 1e9]", path);
   if (!within(history_s, 0, 60) || !within(future_s, 0, 60) || !within(gravity_mps2, 0, 100))
-    return node.error("history, future or gravity is out of range", "0 to 60 s, 0 to 60 s, 0 to 100 m/s^2", path);
+    return node.error("history, future or gravity is out of range", "0 to 60 s, 0 to 60 s, 0 to 100 m/s^2",
+                      path);
   if (sensors.size() > 32) return node.error("there are too many sensors", "at most 32", path + "/sensors");
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::string at = path + "/sensors/" + std::to_string(i);
@@ -407,9 +410,8 @@ void advance(const Spec& spec, State& state, Time now, std::vector<Report>* repo
     if (!sample->counted) count(state, *sample, result, reports);
     sample->counted = true;
   }
-  state.history.erase(state.history.begin(),
-                      state.history.end() -
-                          static_cast<std::ptrdiff_t>(held_after(state, state.checkpoints.front())));
+  state.history.erase(state.history.begin(), state.history.end() - static_cast<std::ptrdiff_t>(held_after(
+                                                                       state, state.checkpoints.front())));
 }
 
 Pose Estimate::pose() const { return pose_from_rpy({x[X], x[Y], x[Z]}, {x[Roll], x[Pitch], x[Yaw]}); }
@@ -467,9 +469,9 @@ bool State::fits(const Spec& spec) const {
          sound_samples(history) && sound_samples(queue) && in_order(history) &&
          (checkpoints.empty() ? history.empty() && !core.known
                               : order_of(checkpoints.back()) < order_of(core)) &&
-         (!datum || (finite(std::array{datum->latitude_rad, datum->longitude_rad, datum->altitude_m,
-                                       datum->yaw_rad}) &&
-                     is_finite(datum->offset_m)));
+         (!datum ||
+          (finite(std::array{datum->latitude_rad, datum->longitude_rad, datum->altitude_m, datum->yaw_rad}) &&
+           is_finite(datum->offset_m)));
 }
 
 }  // namespace sandlot::navigation::ekf

@@ -102,11 +102,11 @@ struct Core {
 /// What has become of a sensor's measurements.
 struct SensorRecord {
   bool heard = false;
-  Time newest;                                  ///< greatest stamp
+  Time newest;                                   ///< greatest stamp
   std::array<std::uint64_t, outcomes> counts{};  ///< by Outcome; parts of messages count one by one
   Outcome last = Outcome::unmeasured;
-  double squared_distance = 0;      ///< squared Mahalanobis distance of the last one compared
-  std::uint32_t components = 0;     ///< of that one
+  double squared_distance = 0;   ///< squared Mahalanobis distance of the last one compared
+  std::uint32_t components = 0;  ///< of that one
   std::uint64_t gated_in_row = 0;
   std::uint64_t count(Outcome o) const { return counts[static_cast<std::size_t>(o)]; }
 
@@ -161,8 +161,10 @@ std::optional<std::size_t> find_sensor(const Spec& spec, std::string_view name);
 /// unless the spec has one.
 /// @param sensor  index in spec.sensors
 Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::Odometry& message);
-Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::PoseWithCovarianceStamped& message);
-Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::TwistWithCovarianceStamped& message);
+Outcome add(const Spec& spec, State& state, std::size_t sensor,
+            const msg::PoseWithCovarianceStamped& message);
+Outcome add(const Spec& spec, State& state, std::size_t sensor,
+            const msg::TwistWithCovarianceStamped& message);
 Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::Imu& message);
 Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::NavSatFix& message);
 

@@ -49,7 +49,8 @@ TEST(EkfConsistency, NeesAndNisOfFiftyRuns) {
   spec.sensors[0].name = "odom0", spec.sensors[0].kind = SensorKind::odometry;
   for (const std::size_t i : {Vx, Vy, Vz, Vyaw}) spec.sensors[0].config[i] = true;
   spec.sensors[1].name = "imu0", spec.sensors[1].kind = SensorKind::imu;
-  for (const std::size_t i : {Roll, Pitch, Yaw, Vroll, Vpitch, Vyaw, Ax, Ay, Az}) spec.sensors[1].config[i] = true;
+  for (const std::size_t i : {Roll, Pitch, Yaw, Vroll, Vpitch, Vyaw, Ax, Ay, Az})
+    spec.sensors[1].config[i] = true;
   spec.sensors[2].name = "gps0", spec.sensors[2].kind = SensorKind::gps;
   for (const std::size_t i : {X, Y, Z}) spec.sensors[2].config[i] = true;
   spec.datum = Datum{.latitude_rad = 0.8, .longitude_rad = 0.15, .altitude_m = 300, .yaw_rad = 0.7};
@@ -67,12 +68,14 @@ TEST(EkfConsistency, NeesAndNisOfFiftyRuns) {
     Stream random(2026, run, Purpose::experiment, 0);
     State state = begin(spec).value();
     Vector truth = spec.initial_state;
-    for (std::size_t i = 0; i < states; ++i) truth[i] += std::sqrt(spec.initial_covariance[i]) * random.normal();
+    for (std::size_t i = 0; i < states; ++i)
+      truth[i] += std::sqrt(spec.initial_covariance[i]) * random.normal();
     std::vector<Report> reports;
     for (int step = 0; step < steps; ++step) {
       if (step > 0) {
         truth = moved(truth, dt);
-        for (std::size_t i = 0; i < states; ++i) truth[i] += std::sqrt(spec.process_noise[i] * dt) * random.normal();
+        for (std::size_t i = 0; i < states; ++i)
+          truth[i] += std::sqrt(spec.process_noise[i] * dt) * random.normal();
       }
       const Time now = Time::from_s(dt * step);
       const auto measured = [&](std::size_t first, double sd) {
@@ -105,7 +108,8 @@ TEST(EkfConsistency, NeesAndNisOfFiftyRuns) {
         const geodesy::Geodetic place = to_geodetic(*spec.datum, measured(X, place_sd));
         msg::NavSatFix fix;
         fix.header.stamp = now;
-        fix.latitude = place.latitude_rad * 180 / math::pi, fix.longitude = place.longitude_rad * 180 / math::pi;
+        fix.latitude = place.latitude_rad * 180 / math::pi,
+        fix.longitude = place.longitude_rad * 180 / math::pi;
         fix.altitude = place.height_m;
         fix.position_covariance = variance(place_sd);
         fix.position_covariance_type = msg::NavSatFix::covariance_known;

@@ -12,8 +12,8 @@ namespace {
 // Operations on whole rows, element by element: no order of additions is left to the vector unit.
 using Row = Eigen::Map<Eigen::Array<double, Matrix::stride, 1>>;
 using ConstRow = Eigen::Map<const Eigen::Array<double, Matrix::stride, 1>>;
+using RowValue = Eigen::Array<double, Matrix::stride, 1>;
 
-void add_row(double* to, double factor, const double* from) { Row(to) += factor * ConstRow(from); }
 void subtract_row(double* to, double factor, const double* from) { Row(to) -= factor * ConstRow(from); }
 
 /// M becomes F M.
@@ -21,21 +21,21 @@ void apply_transition(const Transition& F, Matrix& M) {
   const double dt = F.dt_s, half = 0.5 * dt * dt;
   // Position first: it needs the angles, velocities and accelerations as they were.
   for (std::size_t i = 0; i < 3; ++i) {
-    Eigen::Array<double, Matrix::stride, 1> sum = ConstRow(M.row(X + i));
+    RowValue sum = ConstRow(M.row(X + i));
     for (std::size_t j = 0; j < 3; ++j) sum += F.position_by_angles[i][j] * ConstRow(M.row(Roll + j));
     for (std::size_t j = 0; j < 3; ++j) sum += (F.rotation[i][j] * dt) * ConstRow(M.row(Vx + j));
     for (std::size_t j = 0; j < 3; ++j) sum += (F.rotation[i][j] * half) * ConstRow(M.row(Ax + j));
     Row(M.row(X + i)) = sum;
   }
-  const Eigen::Array<double, Matrix::stride, 1> roll = ConstRow(M.row(Roll)), pitch = ConstRow(M.row(Pitch));
+  const RowValue roll = ConstRow(M.row(Roll)), pitch = ConstRow(M.row(Pitch));
   for (std::size_t i = 0; i < 3; ++i) {
-    Eigen::Array<double, Matrix::stride, 1> sum = ConstRow(M.row(Roll + i));
+    RowValue sum = ConstRow(M.row(Roll + i));
     sum += F.angles_by_angles[i][0] * roll;
     sum += F.angles_by_angles[i][1] * pitch;
     for (std::size_t j = 0; j < 3; ++j) sum += (F.angles_by_rates[i][j] * dt) * ConstRow(M.row(Vroll + j));
     Row(M.row(Roll + i)) = sum;
   }
-  for (std::size_t i = 0; i < 3; ++i) add_row(M.row(Vx + i), dt, M.row(Ax + i));
+  for (std::size_t i = 0; i < 3; ++i) Row(M.row(Vx + i)) += dt * ConstRow(M.row(Ax + i));
 }
 
 void transpose(Matrix& M) {
@@ -46,8 +46,7 @@ void transpose(Matrix& M) {
 /// Both triangles become their mean.
 void symmetrise(Matrix& M) {
   for (std::size_t i = 0; i < states; ++i)
-    for (std::size_t j = i + 1; j < states; ++j)
-      M.at(i, j) = M.at(j, i) = 0.5 * (M.at(i, j) + M.at(j, i));
+    for (std::size_t j = i + 1; j < states; ++j) M.at(i, j) = M.at(j, i) = 0.5 * (M.at(i, j) + M.at(j, i));
 }
 
 struct Turned {
@@ -71,6 +70,72 @@ Vector moved_by(const Vector& x, const Transition& F) {
   }
   wrap_angles(out);
   return out;
+}
+
+/// The number of components is known to the compiler, which then keeps rows in registers.
+template <std::size_t m>
+Correction correct_by(Vector& x, Matrix& P, const Innovation& innovation, double gate) {
+  constexpr std::size_t stride = Matrix::stride;
+  const auto noise = [&](std::size_t i, std::size_t j) { return innovation.noise[i * m + j]; };
+  // S = L L^T
+  std::array<std::array<double, m>, m> L{};
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double covariance = P.at(innovation.index[i], innovation.index[j]) + noise(i, j);
+      double sum = covariance;
+      for (std::size_t k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+      if (i != j) {
+        L[i][j] = sum / L[j][j];
+        continue;
+      }
+      // What rounding alone may have left of the variance is nothing.
+      if (!(sum > 1e-15 * covariance)) return {Correction::Is::singular};
+      L[i][i] = std::sqrt(sum);
+    }
+  Correction result;
+  std::array<double, m> white{};  // L^-1 y
+  for (std::size_t i = 0; i < m; ++i) {
+    double sum = innovation.y[i];
+    for (std::size_t k = 0; k < i; ++k) sum -= L[i][k] * white[k];
+    white[i] = sum / L[i][i];
+    result.squared_distance += white[i] * white[i];
+  }
+  if (gate > 0 && !(result.squared_distance <= gate * gate)) {
+    result.is = Correction::Is::gated;
+    return result;
+  }
+
+  // K^T = S^-1 H P, and H P, row by row.
+  std::array<double, m * stride> HP, KT;
+  for (std::size_t i = 0; i < m; ++i) {
+    Row row(&HP[i * stride]);
+    row = ConstRow(P.row(innovation.index[i]));
+    Row gain(&KT[i * stride]);
+    gain = row;
+    for (std::size_t k = 0; k < i; ++k) subtract_row(&KT[i * stride], L[i][k], &KT[k * stride]);
+    gain *= 1 / L[i][i];
+  }
+  for (std::size_t i = m; i-- > 0;) {
+    for (std::size_t k = i + 1; k < m; ++k) subtract_row(&KT[i * stride], L[k][i], &KT[k * stride]);
+    Row(&KT[i * stride]) *= 1 / L[i][i];
+  }
+  // A = (I - K H) P, then P = A (I - K H)^T + K N K^T = A - (A H^T - K N) K^T.
+  for (std::size_t r = 0; r < states; ++r) {
+    RowValue sum = ConstRow(P.row(r));
+    for (std::size_t i = 0; i < m; ++i) sum -= KT[i * stride + r] * ConstRow(&HP[i * stride]);
+    std::array<double, m> rest;
+    for (std::size_t i = 0; i < m; ++i) {
+      rest[i] = sum[static_cast<Eigen::Index>(innovation.index[i])];
+      for (std::size_t j = 0; j < m; ++j) rest[i] -= KT[j * stride + r] * noise(j, i);
+    }
+    for (std::size_t i = 0; i < m; ++i) sum -= rest[i] * ConstRow(&KT[i * stride]);
+    Row(P.row(r)) = sum;
+  }
+  symmetrise(P);
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t r = 0; r < states; ++r) x[r] += KT[i * stride + r] * innovation.y[i];
+  wrap_angles(x);
+  return result;
 }
 
 }  // namespace
@@ -129,68 +194,16 @@ void predict(Vector& x, Matrix& P, const Vector& noise_per_s, double dt_s) {
 }
 
 Correction correct(Vector& x, Matrix& P, const Innovation& innovation, double gate) {
-  constexpr std::size_t most = most_measured, stride = Matrix::stride;
-  const std::size_t m = innovation.count;
-  SL_CHECK(m > 0 && m <= most);
-  const auto noise = [&](std::size_t i, std::size_t j) { return innovation.noise[i * m + j]; };
-  // S = L L^T
-  std::array<std::array<double, most>, most> L{};
-  for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double covariance = P.at(innovation.index[i], innovation.index[j]) + noise(i, j);
-      double sum = covariance;
-      for (std::size_t k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (i != j) {
-        L[i][j] = sum / L[j][j];
-        continue;
-      }
-      // What rounding alone may have left of the variance is nothing.
-      if (!(sum > 1e-15 * covariance)) return {Correction::Is::singular};
-      L[i][i] = std::sqrt(sum);
-    }
-  Correction result;
-  std::array<double, most> white{};  // L^-1 y
-  for (std::size_t i = 0; i < m; ++i) {
-    double sum = innovation.y[i];
-    for (std::size_t k = 0; k < i; ++k) sum -= L[i][k] * white[k];
-    white[i] = sum / L[i][i];
-    result.squared_distance += white[i] * white[i];
+  switch (innovation.count) {
+    case 1: return correct_by<1>(x, P, innovation, gate);
+    case 2: return correct_by<2>(x, P, innovation, gate);
+    case 3: return correct_by<3>(x, P, innovation, gate);
+    case 4: return correct_by<4>(x, P, innovation, gate);
+    case 5: return correct_by<5>(x, P, innovation, gate);
+    case 6: return correct_by<6>(x, P, innovation, gate);
+    default: break;
   }
-  if (gate > 0 && !(result.squared_distance <= gate * gate)) {
-    result.is = Correction::Is::gated;
-    return result;
-  }
-
-  // K^T = S^-1 H P, and H P, row by row.
-  std::array<double, most * stride> HP, KT;
-  for (std::size_t i = 0; i < m; ++i) {
-    Row row(&HP[i * stride]);
-    row = ConstRow(P.row(innovation.index[i]));
-    Row gain(&KT[i * stride]);
-    gain = row;
-    for (std::size_t k = 0; k < i; ++k) subtract_row(&KT[i * stride], L[i][k], &KT[k * stride]);
-    gain *= 1 / L[i][i];
-  }
-  for (std::size_t i = m; i-- > 0;) {
-    for (std::size_t k = i + 1; k < m; ++k) subtract_row(&KT[i * stride], L[k][i], &KT[k * stride]);
-    Row(&KT[i * stride]) *= 1 / L[i][i];
-  }
-  // A = (I - K H) P, then P = A (I - K H)^T + K N K^T = A - (A H^T - K N) K^T.
-  for (std::size_t r = 0; r < states; ++r) {
-    double* const row = P.row(r);
-    for (std::size_t i = 0; i < m; ++i) subtract_row(row, KT[i * stride + r], &HP[i * stride]);
-    std::array<double, most> rest;
-    for (std::size_t i = 0; i < m; ++i) {
-      rest[i] = row[innovation.index[i]];
-      for (std::size_t j = 0; j < m; ++j) rest[i] -= KT[j * stride + r] * noise(j, i);
-    }
-    for (std::size_t i = 0; i < m; ++i) subtract_row(row, rest[i], &KT[i * stride]);
-  }
-  symmetrise(P);
-  for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t r = 0; r < states; ++r) x[r] += KT[i * stride + r] * innovation.y[i];
-  wrap_angles(x);
-  return result;
+  SL_CHECK_MSG(false, "1 to 6 components");
 }
 
 void wrap_angles(Vector& x) {

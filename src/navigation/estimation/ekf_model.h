@@ -84,7 +84,7 @@ inline constexpr std::size_t most_measured = 6;
 struct Innovation {
   std::size_t count = 0;
   std::array<std::size_t, most_measured> index{};
-  std::array<double, most_measured> y{};                     ///< measured less predicted; angles wrapped
+  std::array<double, most_measured> y{};                      ///< measured less predicted; angles wrapped
   std::array<double, most_measured * most_measured> noise{};  ///< N, count x count, row by row
 };
 

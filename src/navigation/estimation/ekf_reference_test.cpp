@@ -110,7 +110,8 @@ struct Literal {
     for (std::size_t i = 0; i < 15; ++i) P[i][i] += q[i] * dt;
   }
 
-  double correct(const std::vector<std::size_t>& idx, const std::vector<double>& z, const Dense& N, double gate) {
+  double correct(const std::vector<std::size_t>& idx, const std::vector<double>& z, const Dense& N,
+                 double gate) {
     const std::size_t m = idx.size();
     Dense H = zeros(m, 15), y = zeros(m, 1);
     for (std::size_t i = 0; i < m; ++i) {
@@ -167,7 +168,8 @@ TEST(EkfReference, LongRandomSequences) {
     Stream random(seed, 15, Purpose::experiment, 0);
     Spec spec;
     spec.sensors.resize(4);
-    const auto set = [&](std::size_t s, const char* name, SensorKind kind, std::initializer_list<std::size_t> used) {
+    const auto set = [&](std::size_t s, const char* name, SensorKind kind,
+                         std::initializer_list<std::size_t> used) {
       spec.sensors[s].name = name, spec.sensors[s].kind = kind;
       for (const std::size_t i : used) spec.sensors[s].config[i] = true;
     };
@@ -218,8 +220,13 @@ TEST(EkfReference, LongRandomSequences) {
       if (s == 2) outcome = add(spec, state, 2, msg::TwistWithCovarianceStamped{{stamp, ""}, twist});
       if (s == 3)
         outcome = add(spec, state, 3,
-                      msg::Imu{{stamp, ""}, q, fill9(blocks[2]), {z[9], z[10], z[11]}, fill9(blocks[3]),
-                               {z[12], z[13], z[14]}, fill9(blocks[4])});
+                      msg::Imu{{stamp, ""},
+                               q,
+                               fill9(blocks[2]),
+                               {z[9], z[10], z[11]},
+                               fill9(blocks[3]),
+                               {z[12], z[13], z[14]},
+                               fill9(blocks[4])});
       ASSERT_EQ(outcome, Outcome::queued);
       std::vector<Report> reports;
       advance(spec, state, stamp, &reports);
@@ -262,9 +269,7 @@ TEST(EkfReference, LongRandomSequences) {
         EXPECT_NEAR(reports[r].squared_distance, d2, 1e-9 * (1 + d2));
         EXPECT_EQ(reports[r].components, idx.size());
         if (rejected) ++gated;
-        if (outlier) {
-          EXPECT_TRUE(rejected);
-        }
+        if (outlier) { EXPECT_TRUE(rejected); }
         ++r;
       }
       for (std::size_t i = 0; i < 15; ++i) {

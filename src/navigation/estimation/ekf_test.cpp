@@ -56,16 +56,17 @@ struct Arrival {
   msg::Odometry odometry;
   msg::Imu imu;
   msg::PoseWithCovarianceStamped pose;
-  Time stamp() const { return index == 2 ? imu.header.stamp : index < 2 ? odometry.header.stamp : pose.header.stamp; }
+  Time stamp() const {
+    return index == 2 ? imu.header.stamp : index < 2 ? odometry.header.stamp : pose.header.stamp;
+  }
 };
 
 // Messages of a differential odometry, a plain one, an imu and a relative pose, 8 s: in order, and with delays of up to 0.3 s, drawn
 // for each. Stamps of different sensors may be equal.
 TEST(Ekf, OrderOfArrivalDoesNotMatter) {
-  std::vector<Sensor> sensors = {sensor("vo", SensorKind::odometry, {X, Y, Yaw}),
-                                 sensor("wheels", SensorKind::odometry, {Vx, Vy, Vyaw}),
-                                 sensor("imu", SensorKind::imu, {Yaw, Vyaw, Ax}),
-                                 sensor("pose", SensorKind::pose, {X, Y, Yaw})};
+  std::vector<Sensor> sensors = {
+      sensor("vo", SensorKind::odometry, {X, Y, Yaw}), sensor("wheels", SensorKind::odometry, {Vx, Vy, Vyaw}),
+      sensor("imu", SensorKind::imu, {Yaw, Vyaw, Ax}), sensor("pose", SensorKind::pose, {X, Y, Yaw})};
   sensors[0].differential = true;
   sensors[3].relative = true;
   sensors[3].pose_rejection_threshold = 3;
@@ -102,7 +103,8 @@ TEST(Ekf, OrderOfArrivalDoesNotMatter) {
   EXPECT_LE(ordered.state.rewinds, 200u);  // equal stamps, added one by one
   std::vector<Arrival> late = arrivals;
   for (Arrival& a : late) a.at_s += random.below(2) ? random.uniform(0, 0.3) : 0;
-  std::stable_sort(late.begin(), late.end(), [](const Arrival& a, const Arrival& b) { return a.at_s < b.at_s; });
+  std::stable_sort(late.begin(), late.end(),
+                   [](const Arrival& a, const Arrival& b) { return a.at_s < b.at_s; });
   for (const Arrival& a : late) {
     give(delayed, a);
     delayed.to(Time::from_s(a.at_s));
@@ -172,7 +174,8 @@ TEST(Ekf, DuplicateReversedAndEarlyStamps) {
   ASSERT_EQ(rig.reports.size(), 1u);
   EXPECT_EQ(rig.reports[0].outcome, Outcome::used);
   EXPECT_GT(rig.x(Vx), 1.5);
-  for (const std::int64_t ns : {std::int64_t{-1}, INT64_MIN, INT64_MAX, std::int64_t{4'000'000'000'000'000'001}}) {
+  for (const std::int64_t ns :
+       {std::int64_t{-1}, INT64_MIN, INT64_MAX, std::int64_t{4'000'000'000'000'000'001}}) {
     msg::TwistWithCovarianceStamped bad = twist_at(0, {1, 0, 0});
     bad.header.stamp.ns = ns;
     EXPECT_EQ(add(rig.spec, rig.state, 0, bad), Outcome::bad_stamp);
@@ -182,7 +185,8 @@ TEST(Ekf, DuplicateReversedAndEarlyStamps) {
 }
 
 TEST(Ekf, QueueIsBounded) {
-  std::vector<Sensor> sensors = {sensor("odom", SensorKind::odometry, {X, Vx}), sensor("t", SensorKind::twist, {Vx})};
+  std::vector<Sensor> sensors = {sensor("odom", SensorKind::odometry, {X, Vx}),
+                                 sensor("t", SensorKind::twist, {Vx})};
   sensors[0].queue_size = 3;
   Rig rig(sensors);
   for (int i = 1; i <= 5; ++i) {
@@ -192,7 +196,8 @@ TEST(Ekf, QueueIsBounded) {
     EXPECT_EQ(add(rig.spec, rig.state, 1, twist_at(t, {})), Outcome::queued);
   }
   rig.to(Time{});  // sorts the queue, nothing is due
-  EXPECT_EQ(add(rig.spec, rig.state, 0, msg::Odometry{{Time::from_s(1), ""}, "", pose_at(1, {}).pose, twist_at(1, {}).twist}),
+  EXPECT_EQ(add(rig.spec, rig.state, 0,
+                msg::Odometry{{Time::from_s(1), ""}, "", pose_at(1, {}).pose, twist_at(1, {}).twist}),
             Outcome::full);
   rig.to(Time::from_s(1));
   EXPECT_EQ(rig.reports.size(), 11u);
@@ -227,9 +232,11 @@ TEST(Ekf, GpsJumpIsGated) {
   Rig rig(sensors);
   rig.spec.datum = datum;
   rig.start();
-  for (int i = 1; i <= 20; ++i) EXPECT_EQ(rig.give(0, fix_at(0.1 * i, datum, {0.1 * i, 0, 0})), Outcome::used);
+  for (int i = 1; i <= 20; ++i)
+    EXPECT_EQ(rig.give(0, fix_at(0.1 * i, datum, {0.1 * i, 0, 0})), Outcome::used);
   const double predicted = estimate(rig.spec, rig.state, Time::from_s(2.3)).x[X];
-  for (int i = 21; i <= 23; ++i) EXPECT_EQ(rig.give(0, fix_at(0.1 * i, datum, {100 + 0.1 * i, 0, 0})), Outcome::gated);
+  for (int i = 21; i <= 23; ++i)
+    EXPECT_EQ(rig.give(0, fix_at(0.1 * i, datum, {100 + 0.1 * i, 0, 0})), Outcome::gated);
   EXPECT_EQ(rig.state.sensors[0].gated_in_row, 3u);
   EXPECT_GT(rig.state.sensors[0].squared_distance, 25);
   EXPECT_EQ(rig.state.sensors[0].components, 3u);
@@ -274,7 +281,8 @@ TEST(Ekf, PlaneStaysAPlane) {
   Stream random(1, 1, Purpose::experiment, 0);
   for (int i = 1; i <= 200; ++i) {
     const auto r = [&] { return random.uniform(-0.4, 0.4); };
-    EXPECT_EQ(rig.give(0, imu_at(0.01 * i, {r(), r(), r()}, {r(), r(), r()}, {r(), r(), r()})), Outcome::used);
+    EXPECT_EQ(rig.give(0, imu_at(0.01 * i, {r(), r(), r()}, {r(), r(), r()}, {r(), r(), r()})),
+              Outcome::used);
     EXPECT_EQ(rig.give(1, pose_at(0.01 * i + 0.005, {r(), r(), r()}, {r(), r(), r()})), Outcome::used);
   }
   for (const Index i : {Z, Roll, Pitch, Vz, Vroll, Vpitch, Az}) {
@@ -342,7 +350,8 @@ TEST(Ekf, RelativePosesCountFromTheFirst) {
 
 TEST(Ekf, FirstFixIsWhereTheRobotIs) {
   const Datum truth{.latitude_rad = 0.8, .longitude_rad = 0.15, .altitude_m = 300};
-  std::vector<Sensor> sensors = {sensor("imu", SensorKind::imu, {Yaw}), sensor("gps", SensorKind::gps, {X, Y})};
+  std::vector<Sensor> sensors = {sensor("imu", SensorKind::imu, {Yaw}),
+                                 sensor("gps", SensorKind::gps, {X, Y})};
   sensors[1].mount.p = {1, 0, 0.5};  // antenna ahead
   Rig rig(sensors);
   rig.spec.initial_state[X] = 3;
@@ -431,7 +440,12 @@ TEST(Ekf, ExtremesStayFinite) {
     const Vec3 rpy{r(), math::pi / 2 * static_cast<double>(random.below(3)), r()};
     const Time at = Time::from_ns(ns);
     if (random.below(3) == 0) {
-      rig.give(1, msg::Imu{{at, ""}, {}, diagonal3(v()), {r(), r(), r()}, diagonal3(v()), {r(), r(), r()},
+      rig.give(1, msg::Imu{{at, ""},
+                           {},
+                           diagonal3(v()),
+                           {r(), r(), r()},
+                           diagonal3(v()),
+                           {r(), r(), r()},
                            diagonal3(v())});
     } else {
       msg::Odometry odometry{{at, ""}, "", pose_at(0, {r(), r(), r()}, rpy, v(), v()).pose, {}};
@@ -475,7 +489,8 @@ TEST(Ekf, ClockThatJumpsBack) {
 }
 
 TEST(Ekf, SnapshotGoesOnTheSame) {
-  std::vector<Sensor> sensors = {sensor("vo", SensorKind::pose, {X, Y, Yaw}), sensor("imu", SensorKind::imu, {Yaw, Vyaw}),
+  std::vector<Sensor> sensors = {sensor("vo", SensorKind::pose, {X, Y, Yaw}),
+                                 sensor("imu", SensorKind::imu, {Yaw, Vyaw}),
                                  sensor("gps", SensorKind::gps, {X, Y})};
   sensors[0].differential = true;
   Rig rig(sensors);

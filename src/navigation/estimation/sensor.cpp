@@ -185,7 +185,8 @@ Status Sensor::check(const Node& node, const std::string& path) const {
   if (relative && (!poses || !has(X, Vx)))
     return error("there are no poses to count from the first one", "false", "relative");
   if (relative && differential)
-    return error("differences do not depend on the first pose", "one of differential and relative", "relative");
+    return error("differences do not depend on the first pose", "one of differential and relative",
+                 "relative");
   if (!deviation.empty() && deviation.size() != states)
     return error("has not 15 numbers", "one for each component of the state, or none", "deviation");
   if (std::any_of(deviation.begin(), deviation.end(), [](double each) { return each > 0 && each < 1e-9; }))
@@ -260,7 +261,8 @@ Outcome to_samples(const Sensor& sensor, const msg::Imu& imu, double gravity, Sa
     Matrix6 C{};
     place_block(imu.orientation_covariance, 3, C);
     deviate(sensor, Index::X, C);
-    if (!sound_covariance(C, chosen_of(sensor, Part::pose), sensor.differential)) return Outcome::bad_covariance;
+    if (!sound_covariance(C, chosen_of(sensor, Part::pose), sensor.differential))
+      return Outcome::bad_covariance;
     Sample& sample = next_sample(out, Part::pose);
     sample.value = numbers_of({{}, normalised(imu.orientation) * conjugate(q_BS)});
     sample.covariance = triangle_of(C);
@@ -292,8 +294,8 @@ Outcome to_samples(const Sensor& sensor, const msg::Imu& imu, double gravity, Sa
   if (const Outcome o = vector(Part::twist, imu.angular_velocity, imu.angular_velocity_covariance);
       o != Outcome::queued)
     return o;
-  if (const Outcome o =
-          vector(Part::acceleration, imu.linear_acceleration, imu.linear_acceleration_covariance);
+  if (const Outcome o = vector(Part::acceleration, imu.linear_acceleration,
+                               imu.linear_acceleration_covariance);
       o != Outcome::queued)
     return o;
   return out.count ? Outcome::queued : Outcome::unmeasured;
@@ -358,8 +360,8 @@ void difference(const Sample& from, const Sample& to, PoseErrors errors, double 
 void make_relative(const std::array<double, 6>& first, Sample& sample) {
   const Pose X_WF = pose_of(first);
   sample.value = numbers_of(inverse(X_WF) * pose_of(sample.value));
-  sample.covariance =
-      triangle_of(transformed(square_of(sample.covariance), rotation_of(conjugate(X_WF.q)), Matrix3{}));
+  sample.covariance = triangle_of(
+      transformed(square_of(sample.covariance), rotation_of(conjugate(X_WF.q)), Matrix3{}));
 }
 
 }  // namespace sandlot::navigation::ekf

@@ -100,7 +100,9 @@ inline std::span<const EnumName<Part>> enum_names(Part) {
       {"pose", Part::pose}, {"twist", Part::twist}, {"acceleration", Part::acceleration}};
   return names;
 }
-constexpr std::size_t first_index(Part part) { return part == Part::pose ? X : part == Part::twist ? Vx : Ax; }
+constexpr std::size_t first_index(Part part) {
+  return part == Part::pose ? X : part == Part::twist ? Vx : Ax;
+}
 
 /// Answer to a measurement.
 enum class Outcome : std::uint8_t {
@@ -120,14 +122,19 @@ enum class Outcome : std::uint8_t {
 };
 inline constexpr std::size_t outcomes = 13;
 inline std::span<const EnumName<Outcome>> enum_names(Outcome) {
-  static constexpr EnumName<Outcome> names[] = {
-      {"queued", Outcome::queued},         {"used", Outcome::used},
-      {"gated", Outcome::gated},           {"started", Outcome::started},
-      {"late", Outcome::late},             {"early", Outcome::early},
-      {"duplicate", Outcome::duplicate},   {"full", Outcome::full},
-      {"unmeasured", Outcome::unmeasured}, {"bad_stamp", Outcome::bad_stamp},
-      {"bad_value", Outcome::bad_value},   {"bad_covariance", Outcome::bad_covariance},
-      {"diverged", Outcome::diverged}};
+  static constexpr EnumName<Outcome> names[] = {{"queued", Outcome::queued},
+                                                {"used", Outcome::used},
+                                                {"gated", Outcome::gated},
+                                                {"started", Outcome::started},
+                                                {"late", Outcome::late},
+                                                {"early", Outcome::early},
+                                                {"duplicate", Outcome::duplicate},
+                                                {"full", Outcome::full},
+                                                {"unmeasured", Outcome::unmeasured},
+                                                {"bad_stamp", Outcome::bad_stamp},
+                                                {"bad_value", Outcome::bad_value},
+                                                {"bad_covariance", Outcome::bad_covariance},
+                                                {"diverged", Outcome::diverged}};
   return names;
 }
 
@@ -142,8 +149,8 @@ struct Sample {
   Time stamp;
   std::uint32_t sensor = 0;
   Part part = Part::pose;
-  bool counted = false;         ///< its outcome is in the counters
-  bool holds_gravity = false;   ///< acceleration: gravity is to be removed by the estimated orientation
+  bool counted = false;        ///< its outcome is in the counters
+  bool holds_gravity = false;  ///< acceleration: gravity is to be removed by the estimated orientation
   std::array<double, 6> value{};
   Triangle covariance{};
 

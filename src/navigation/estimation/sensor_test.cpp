@@ -74,7 +74,8 @@ TEST(EkfSensor, DifferenceOfAccumulatedPosesIsTheStep) {
   difference(from, to, PoseErrors::accumulated, 1, twist);
   const double expected[6] = {along, across, height, turn, turn, turn};
   for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j <= i; ++j) EXPECT_NEAR(cov(twist, i, j), i == j ? expected[i] : 0, 1e-12) << i << j;
+    for (std::size_t j = 0; j <= i; ++j)
+      EXPECT_NEAR(cov(twist, i, j), i == j ? expected[i] : 0, 1e-12) << i << j;
 }
 
 TEST(EkfSensor, TwistOfAMountThatIsTurnedAndAhead) {
@@ -96,12 +97,14 @@ TEST(EkfSensor, PoseOfAMountAhead) {
   Sensor s = sensor("s", SensorKind::pose, {X, Y, Yaw});
   s.mount = pose_from_rpy({2, 0, 0}, {0, 0, 0});
   Samples out;
-  ASSERT_EQ(to_samples(s, pose_at(0, {5, 5, 0}, {0, 0, math::pi / 2}, 0.01, 0.02).pose, out), Outcome::queued);
+  ASSERT_EQ(to_samples(s, pose_at(0, {5, 5, 0}, {0, 0, math::pi / 2}, 0.01, 0.02).pose, out),
+            Outcome::queued);
   EXPECT_NEAR(out.part[0].value[0], 5, 1e-12);
   EXPECT_NEAR(out.part[0].value[1], 3, 1e-12);
   EXPECT_NEAR(cov(out.part[0], 0, 0), 0.01 + 4 * 0.02, 1e-12);
   EXPECT_NEAR(cov(out.part[0], 1, 1), 0.01, 1e-12);
-  EXPECT_NEAR(cov(out.part[0], 0, 5), 2 * 0.02, 1e-12);  // turning to the left moves B, behind, to the right: +x
+  EXPECT_NEAR(cov(out.part[0], 0, 5), 2 * 0.02,
+              1e-12);  // turning to the left moves B, behind, to the right: +x
 }
 
 TEST(EkfSensor, GravityAtRestOnASlope) {
