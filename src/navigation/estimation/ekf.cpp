@@ -80,7 +80,7 @@ bool sound_core(const Core& core) {
 }
 
 /// Compares a sample with the estimate at its time, and corrects that.
-Processed correct_by(const Spec& spec, Core& core, const Sample& given) {
+Processed compare(const Spec& spec, Core& core, const Sample& given) {
   const Sensor& sensor = spec.sensors[given.sensor];
   Sample sample = given;
   const std::size_t chosen_from = first_index(given.part);
@@ -147,7 +147,7 @@ Processed process(const Spec& spec, const Vector& noise, Core& core, const Sampl
   if (core.known && sample.stamp > core.at) predict(core.x, core.P, noise, (sample.stamp - core.at).s());
   core.at = sample.stamp, core.sensor = sample.sensor, core.part = sample.part;
   Processed result{Outcome::diverged};
-  if (sound_core(core)) result = correct_by(spec, core, sample);
+  if (sound_core(core)) result = compare(spec, core, sample);
   if (result.outcome != Outcome::diverged && sound_core(core)) return result;
   // The next sample begins again.
   Core first = first_core(spec);

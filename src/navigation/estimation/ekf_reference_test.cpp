@@ -16,16 +16,16 @@ using Dense = std::vector<std::vector<double>>;
 
 M3 mul(const M3& a, const M3& b) {
   M3 c{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
   return c;
 }
 M3 rx(double a) { return {{{1, 0, 0}, {0, math::cos(a), -math::sin(a)}, {0, math::sin(a), math::cos(a)}}}; }
 M3 ry(double a) { return {{{math::cos(a), 0, math::sin(a)}, {0, 1, 0}, {-math::sin(a), 0, math::cos(a)}}}; }
 M3 rz(double a) { return {{{math::cos(a), -math::sin(a), 0}, {math::sin(a), math::cos(a), 0}, {0, 0, 1}}}; }
 // Derivative of a rotation about an axis: the rotation by 90 degrees more, without the part along the axis.
-M3 without(M3 m, int axis) { return m[axis][axis] = 0, m; }
+M3 without(M3 m, std::size_t axis) { return m[axis][axis] = 0, m; }
 M3 drx(double a) { return without(rx(a + math::pi / 2), 0); }
 M3 dry(double a) { return without(ry(a + math::pi / 2), 1); }
 M3 drz(double a) { return without(rz(a + math::pi / 2), 2); }
@@ -79,7 +79,7 @@ struct Literal {
     const std::array<M3, 3> by = {mul(rz(c), mul(ry(b), drx(a))), mul(rz(c), mul(dry(b), rx(a))),
                                   mul(drz(c), mul(ry(b), rx(a)))};
     double d[3], w[3] = {x[9], x[10], x[11]};
-    for (int i = 0; i < 3; ++i) d[i] = x[6 + i] * dt + x[12 + i] * dt * dt / 2;
+    for (std::size_t i = 0; i < 3; ++i) d[i] = x[6 + i] * dt + x[12 + i] * dt * dt / 2;
     // Rates of roll, pitch and yaw: E w, and its derivatives.
     const double sa = math::sin(a), ca = math::cos(a), tb = math::tan(b), cb = math::cos(b);
     const double sec2 = 1 + tb * tb, dsec = tb / cb;
@@ -131,7 +131,7 @@ struct Literal {
       x[i] += Ky[i][0];
       for (std::size_t j = 0; j < 15; ++j) I_KH[i][j] = (i == j) - KH[i][j];
     }
-    for (std::size_t i : {3, 4, 5}) x[i] = wrapped(x[i]);
+    for (const std::size_t i : {Roll, Pitch, Yaw}) x[i] = wrapped(x[i]);
     P = product(I_KH, P);
     return d2;
   }
