@@ -146,9 +146,8 @@ Processed compare(const Spec& spec, Core& core, const Sample& given) {
 Processed process(const Spec& spec, const Vector& noise, Core& core, const Sample& sample) {
   if (core.known && sample.stamp > core.at) predict(core.x, core.P, noise, (sample.stamp - core.at).s());
   core.at = sample.stamp, core.sensor = sample.sensor, core.part = sample.part;
-  Processed result{Outcome::diverged};
-  if (sound_core(core)) result = compare(spec, core, sample);
-  if (result.outcome != Outcome::diverged && sound_core(core)) return result;
+  const Processed result = compare(spec, core, sample);
+  if (sound_core(core)) return result;
   // The next sample begins again.
   Core first = first_core(spec);
   first.at = core.at, first.sensor = core.sensor, first.part = core.part;

@@ -338,6 +338,16 @@ TEST(EkfReference, CovarianceStaysSymmetricAndPositive) {
   }
 }
 
+TEST(EkfReference, PredictionIsExactlySymmetric) {
+  Vector x;
+  Matrix P;
+  for (std::size_t i = 0; i < states; ++i) x[i] = 0.1 * static_cast<double>(i) - 0.7, P.at(i, i) = 1;
+  for (int step = 0; step < 5; ++step) predict(x, P, Spec{}.process_noise, 0.1);
+  for (std::size_t i = 0; i < states; ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_EQ(P.at(i, j), P.at(j, i));
+  EXPECT_NE(P.at(Yaw, Pitch), 0);
+}
+
 TEST(EkfReference, SingularAndGatedChangeNothing) {
   Vector x{};
   Matrix P;

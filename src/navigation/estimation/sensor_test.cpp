@@ -93,6 +93,17 @@ TEST(EkfSensor, TwistOfAMountThatIsTurnedAndAhead) {
   EXPECT_NEAR(cov(out.part[0], 1, 5), -0.01, 1e-12);  // v_y = v_Sy - 1 m * w
 }
 
+TEST(EkfSensor, TwistOfAMountAhead) {
+  Sensor s = sensor("s", SensorKind::twist, {Vx, Vy, Vyaw});
+  s.mount.p = {2, 0, 0};
+  Samples out;
+  ASSERT_EQ(to_samples(s, twist_at(0, {1, 1, 0}, {0, 0, 0.5}, 0.01).twist, out), Outcome::queued);
+  EXPECT_NEAR(out.part[0].value[0], 1, 1e-12);
+  EXPECT_NEAR(out.part[0].value[1], 0, 1e-12);
+  EXPECT_NEAR(cov(out.part[0], 0, 0), 0.01, 1e-12);
+  EXPECT_NEAR(cov(out.part[0], 1, 1), 0.05, 1e-12);  // 0.01 (1 + 2^2)
+}
+
 TEST(EkfSensor, PoseOfAMountAhead) {
   Sensor s = sensor("s", SensorKind::pose, {X, Y, Yaw});
   s.mount = pose_from_rpy({2, 0, 0}, {0, 0, 0});
