@@ -179,9 +179,7 @@ Outcome refuse(State& state, std::size_t sensor, Outcome outcome) {
 /// The answer before a message is looked into: `queued` when it may come in.
 Outcome admit(const Spec& spec, const State& state, std::size_t sensor, Time stamp) {
   if (stamp < Time{} || stamp > last_stamp) return Outcome::bad_stamp;
-  const SensorRecord& record = state.sensors[sensor];
   const auto same = [&](const Sample& each) { return each.sensor == sensor && each.stamp == stamp; };
-  if (record.heard && record.newest == stamp) return Outcome::duplicate;
   if (std::any_of(state.queue.begin(), state.queue.end(), same)) return Outcome::duplicate;
   const auto first = std::lower_bound(state.history.begin(), state.history.end(), stamp,
                                       [](const Sample& each, Time at) { return each.stamp < at; });
@@ -204,8 +202,6 @@ Outcome enqueue(State& state, std::size_t sensor, Time stamp, Samples& samples) 
     state.queue.push_back(samples.part[i]);
     ++record.counts[static_cast<std::size_t>(Outcome::queued)];
   }
-  record.newest = record.heard ? std::max(record.newest, stamp) : stamp;
-  record.heard = true;
   return record.last = Outcome::queued;
 }
 
@@ -246,6 +242,9 @@ std::size_t gather(const Spec& spec, State& state, Time now, std::vector<Report>
                (sample.stamp < oldest || order_of(sample) < order_of(state.checkpoints.front()))) {
       count(state, sample, {Outcome::late}, reports);
     } else {
+      SensorRecord& record = state.sensors[sample.sensor];
+      record.newest = record.heard ? std::max(record.newest, sample.stamp) : sample.stamp;
+      record.heard = true;
       std::size_t at = state.history.size();
       state.history.push_back(sample);
       for (; at > 0 && order_of(sample) < order_of(state.history[at - 1]); --at)

@@ -102,7 +102,7 @@ struct Core {
 /// What has become of a sensor's measurements.
 struct SensorRecord {
   bool heard = false;
-  Time newest;                                   ///< greatest stamp
+  Time newest;                                   ///< greatest stamp processed
   std::array<std::uint64_t, outcomes> counts{};  ///< by Outcome; parts of messages count one by one
   Outcome last = Outcome::unmeasured;
   double squared_distance = 0;   ///< squared Mahalanobis distance of the last one compared
@@ -111,8 +111,8 @@ struct SensorRecord {
   std::uint64_t count(Outcome o) const { return counts[static_cast<std::size_t>(o)]; }
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"heard", "", "Whether there has been a measurement."}, s.heard);
-    visit(Field{"newest", "s", "Greatest stamp."}, s.newest);
+    visit(Field{"heard", "", "Whether a measurement has been processed."}, s.heard);
+    visit(Field{"newest", "s", "Greatest stamp processed."}, s.newest);
     visit(Field{"counts", "1",
                 "Measurements queued, used, gated, started, late, early, duplicate, full, unmeasured, with a "
                 "bad stamp, bad value, bad covariance, and those that met a diverged filter."},

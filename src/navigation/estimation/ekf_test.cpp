@@ -373,7 +373,7 @@ TEST(Ekf, ClockThatJumpsBack) {
     Rig rig({sensor("twist", SensorKind::twist, {Vx})});
     rig.spec.reset_on_time_jump = reset;
     for (int i = 0; i < 20; ++i) rig.give(0, twist_at(100 + 0.1 * i, {1, 0, 0}));
-    add(rig.spec, rig.state, 0, twist_at(102, {1, 0, 0}));  // waits
+    EXPECT_EQ(add(rig.spec, rig.state, 0, twist_at(102, {1, 0, 0})), Outcome::queued);
     EXPECT_EQ(add(rig.spec, rig.state, 0, twist_at(1, {2, 0, 0})), Outcome::queued);
     advance(rig.spec, rig.state, Time::from_s(1));
     EXPECT_EQ(rig.state.sensors[0].count(Outcome::late), reset ? 0u : 1u);
@@ -383,7 +383,10 @@ TEST(Ekf, ClockThatJumpsBack) {
     EXPECT_NEAR(rig.x(Vx), reset ? 2 : 1, 1e-9);
     if (reset) {
       EXPECT_TRUE(rig.state.queue.empty());
+      EXPECT_EQ(rig.state.sensors[0].newest, Time::from_s(1));
       EXPECT_EQ(rig.give(0, twist_at(1.1, {2, 0, 0})), Outcome::used);
+      EXPECT_EQ(rig.give(0, twist_at(101.9, {2, 0, 0})), Outcome::used);  // once more
+      EXPECT_EQ(rig.give(0, twist_at(102, {2, 0, 0})), Outcome::used);    // which was early before
     }
   }
   // A jump within the history is lateness.
