@@ -4,6 +4,7 @@
 
 #include "base/bytes.h"
 #include "base/random.h"
+#include "base/read.h"
 #include "navigation/estimation/test_messages.h"
 
 namespace sandlot::navigation::ekf {
@@ -493,6 +494,35 @@ TEST(Ekf, SpecsThatAreRefused) {
   EXPECT_NE(error([](Spec& s) { s.history_s = INFINITY; }), "");
   EXPECT_NE(error([](Spec& s) { s.sensors[0].config = {}; }), "");
   EXPECT_NE(error([](Spec& s) { s.sensors.resize(33, s.sensors[0]); }), "");
+}
+
+TEST(Ekf, SpecFromAFile) {
+  const auto list = [](std::initializer_list<const char*> items) {
+    Node out = Node::sequence();
+    for (const char* item : items) out.push(Node::scalar(item));
+    return out;
+  };
+  Node given = Node::map(), wheels = Node::map();
+  wheels.set("name", Node::scalar("odom0"));
+  wheels.set("kind", Node::scalar("odometry"));
+  const char *const no = "false", *const yes = "true";
+  wheels.set("config", list({no, no, no, no, no, no, yes, yes, no, no, no, yes, no, no, no}));
+  Node sensors = Node::sequence();
+  sensors.push(wheels);
+  given.set("two_d_mode", Node::scalar("true"));
+  given.set("sensors", sensors);
+  const Result<Spec> spec = read_spec<Spec>(given);
+  ASSERT_TRUE(spec) << spec.error().text();
+  EXPECT_TRUE(spec->two_d_mode);
+  EXPECT_TRUE(spec->sensors[0].config[Vyaw]);
+  EXPECT_FALSE(spec->sensors[0].config[X]);
+  given.find("sensors")->items()[0].set("kind", Node::scalar("gps"));
+  const Result<Spec> wrong = read_spec<Spec>(given);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().path, "/sensors/0/config");
+  given.find("sensors")->items()[0].set("kind", Node::scalar("odometry"));
+  given.find("sensors")->items()[0].set("config", list({yes, yes}));
+  EXPECT_FALSE(read_spec<Spec>(given));
 }
 
 TEST(Ekf, FindsSensorsByName) {
