@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 
 #include "navigation/planning/open_list.h"
 
@@ -13,10 +14,12 @@ namespace {
 
 constexpr std::array<EnumName<GridMethod>, 2> grid_methods{
     {{"astar", GridMethod::astar}, {"theta", GridMethod::theta}}};
+constexpr std::array<int, 8> grid_dx{1, 0, -1, 0, 1, -1, -1, 1}, grid_dy{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr double grid_never = std::numeric_limits<double>::infinity();
 
 /// Search over a copy of the costs with a blocked rim, so that neighbours need no test of bounds. Lengths are in
-/// cells.
+/// cells. Costs and parents of cells that were not reached stay unwritten: a search near by touches little memory.
+template <bool any_angle>
 class GridSearch {
  public:
   GridSearch(const CostMap& map, double cost_weight) : stride_(map.geometry.width + 2) {
@@ -26,24 +29,61 @@ class GridSearch {
     for (int y = 0; y < map.geometry.height; ++y)
       std::copy_n(map.cost.data() + map.geometry.index({0, y}), map.geometry.width,
                   cost_.data() + id({0, y}));
-    nodes_.assign(cells, {});
+    state_.assign(cells, unseen);
+    way_ = std::make_unique_for_overwrite<double[]>(cells);
+    parent_ = std::make_unique_for_overwrite<std::uint32_t[]>(cells);
     for (int c = 0; c < 256; ++c)
       weight_[static_cast<std::size_t>(c)] = c >= inscribed_cost ? grid_never : 1 + cost_weight * c / 252;
   }
 
   /// False when the goal can't be reached.
-  bool run(Cell start, Cell goal, GridMethod method) {
+  bool run(Cell start, Cell goal) {
     goal_ = goal;
-    nodes_[id(start)] = {0, id(start), false};
-    open_.push({0, 0, id(start)});
-    return method == GridMethod::astar ? search<false>() : search<true>();
+    const std::uint32_t from = id(start), to = id(goal);
+    reach(from, 0, from, start);
+    const std::array<int, 8> step{1,           stride_,      -1,           -stride_,
+                                  1 + stride_, -1 + stride_, -1 - stride_, 1 - stride_};
+    while (!open_.empty()) {
+      const std::uint32_t at = open_.pop().item();
+      // An entry whose cell has been closed is out of date; a cell whose cost fell later is open again.
+      if (state_[at] == closed) continue;
+      state_[at] = closed;
+      ++expanded_;
+      if (at == to) return true;
+      const Cell here = cell(at);
+      for (std::size_t k = 0; k < step.size(); ++k) {
+        const std::uint32_t next = moved(at, step[k]);
+        if (cost_[next] >= inscribed_cost || (!any_angle && state_[next] == closed)) continue;
+        // Diagonal: both cells beside it must be free.
+        if (k >= 4 && (cost_[moved(at, step[k - 4])] >= inscribed_cost ||
+                       cost_[moved(at, step[(k - 3) % 4])] >= inscribed_cost))
+          continue;
+        const double length = k >= 4 ? std::numbers::sqrt2 : 1,
+                     known = state_[next] == unseen ? grid_never : way_[next];
+        double cost = way_[at] + length * 0.5 * (weight(at) + weight(next));
+        std::uint32_t parent = at;
+        const Cell there{here.x + grid_dx[k], here.y + grid_dy[k]};
+        if constexpr (any_angle) {
+          // Only a line that may be cheaper than what is known is worth walking.
+          const std::uint32_t far = parent_[at];
+          const double room = std::min(cost, known - 1e-9) - way_[far];
+          const double straight = far == at ? grid_never : line_cost(cell(far), there, room);
+          if (straight <= room) {
+            cost = way_[far] + straight;
+            parent = far;
+          }
+        }
+        if (cost < known) reach(next, cost, parent, there);
+      }
+    }
+    return false;
   }
 
   /// Cells at which the path turns, with the first and the last.
   std::vector<Cell> path() const {
     std::vector<Cell> out{goal_};
-    for (std::uint32_t at = id(goal_); nodes_[at].parent != at;) {
-      at = nodes_[at].parent;
+    for (std::uint32_t at = id(goal_); parent_[at] != at;) {
+      at = parent_[at];
       const Cell c = cell(at);
       if (const std::size_t n = out.size(); n >= 2) {
         const std::int64_t ax = out[n - 1].x - out[n - 2].x, ay = out[n - 1].y - out[n - 2].y,
@@ -55,75 +95,31 @@ class GridSearch {
     std::reverse(out.begin(), out.end());
     return out;
   }
-  double cost() const { return nodes_[id(goal_)].cost; }
+  double cost() const { return way_[id(goal_)]; }
   std::size_t expanded() const { return expanded_; }
 
  private:
-  struct Node {
-    double cost = grid_never;
-    std::uint32_t parent = 0;
-    bool closed = false;
-  };
+  enum : std::uint8_t { unseen, open, closed };
 
   std::uint32_t id(Cell c) const { return static_cast<std::uint32_t>((c.y + 1) * stride_ + c.x + 1); }
   Cell cell(std::uint32_t i) const {
     return {static_cast<int>(i) % stride_ - 1, static_cast<int>(i) / stride_ - 1};
   }
+  static std::uint32_t moved(std::uint32_t at, int step) {
+    return static_cast<std::uint32_t>(static_cast<int>(at) + step);
+  }
   double weight(std::uint32_t i) const { return weight_[cost_[i]]; }
 
-  template <bool any_angle>
   double heuristic(Cell c) const {
     const double dx = std::abs(c.x - goal_.x), dy = std::abs(c.y - goal_.y);
     if (any_angle) return std::sqrt(dx * dx + dy * dy);
     return std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy);
   }
-
-  template <bool any_angle>
-  bool search() {
-    const std::uint32_t to = id(goal_);
-    const std::array<int, 8> step{1,           stride_,      -1,           -stride_,
-                                  1 + stride_, -1 + stride_, -1 - stride_, 1 - stride_};
-    while (!open_.empty()) {
-      const OpenList::Entry entry = open_.pop();
-      const std::uint32_t at = entry.item;
-      Node& node = nodes_[at];
-      // An entry whose cell has been closed is out of date; a cell whose cost fell later is open again.
-      if (node.closed) continue;
-      node.closed = true;
-      ++expanded_;
-      if (at == to) return true;
-      const double here = weight(at);
-      for (std::size_t k = 0; k < step.size(); ++k) {
-        const auto next = static_cast<std::uint32_t>(static_cast<int>(at) + step[k]);
-        Node& neighbour = nodes_[next];
-        if (cost_[next] >= inscribed_cost || (!any_angle && neighbour.closed)) continue;
-        double length = 1;
-        if (k >= 4) {
-          // Diagonal: both cells beside it must be free.
-          const auto beside = static_cast<std::uint32_t>(static_cast<int>(at) + step[k - 4]),
-                     other = static_cast<std::uint32_t>(static_cast<int>(at) + step[(k - 3) % 4]);
-          if (cost_[beside] >= inscribed_cost || cost_[other] >= inscribed_cost) continue;
-          length = std::numbers::sqrt2;
-        }
-        double cost = node.cost + length * 0.5 * (here + weight(next));
-        std::uint32_t parent = at;
-        if constexpr (any_angle) {
-          if (node.parent != at) {
-            const Node& far = nodes_[node.parent];
-            const double room = std::min(cost, neighbour.cost) - far.cost;
-            if (const double straight = line_cost(cell(node.parent), cell(next), room); straight <= room) {
-              cost = far.cost + straight;
-              parent = node.parent;
-            }
-          }
-        }
-        if (!(cost < neighbour.cost)) continue;
-        neighbour = {cost, parent, false};
-        const double ahead = heuristic<any_angle>(cell(next));
-        open_.push({cost + ahead, static_cast<float>(ahead), next});
-      }
-    }
-    return false;
+  void reach(std::uint32_t at, double cost, std::uint32_t parent, Cell c) {
+    way_[at] = cost;
+    parent_[at] = parent;
+    state_[at] = open;
+    open_.push(OpenList::entry(cost, heuristic(c), at));
   }
 
   /// Integral of the weight along the line between two centres; infinite where it is blocked, or surely above
@@ -143,6 +139,7 @@ class GridSearch {
       const double now = order <= 0 ? static_cast<double>(2 * k + 1) * per_x
                                     : static_cast<double>(2 * m + 1) * per_y;
       sum += (now - before) * weight(static_cast<std::uint32_t>(at));
+      if ((sum + 1 - now) * length > limit) return grid_never;
       before = now;
       if (order == 0 && (cost_[static_cast<std::size_t>(at + sx)] >= inscribed_cost ||
                          cost_[static_cast<std::size_t>(at + sy)] >= inscribed_cost))
@@ -155,9 +152,10 @@ class GridSearch {
   }
 
   int stride_;
-  std::vector<std::uint8_t> cost_;
+  std::vector<std::uint8_t> cost_, state_;
+  std::unique_ptr<double[]> way_;  ///< cost from the start
+  std::unique_ptr<std::uint32_t[]> parent_;
   std::array<double, 256> weight_{};
-  std::vector<Node> nodes_;
   OpenList open_;
   Cell goal_;
   std::size_t expanded_ = 0;
@@ -219,14 +217,23 @@ Result<GridPlan> plan_grid(const CostMap& map, const GridPlannerSpec& spec, Vec2
   const GridFrame frame(map.geometry);
   SL_ASSIGN(const Cell start, grid_end(map, frame, start_M, spec.start_tolerance_m, "start"));
   SL_ASSIGN(const Cell goal, grid_end(map, frame, goal_M, spec.goal_tolerance_m, "goal"));
-  GridSearch search(map, spec.cost_weight);
-  if (!search.run(start, goal, spec.method))
-    return Error{"there is no way from " + point_text(start_M) + " to " + point_text(goal_M),
-                 "obstacles, or gaps narrower than the robot, lie between them"};
 
   GridPlan plan;
-  plan.cost_m = search.cost() * map.geometry.resolution_m;
-  plan.expanded = search.expanded();
+  std::vector<Cell> corners;
+  const auto search = [&]<bool any_angle>(GridSearch<any_angle> grid) {
+    const bool found = grid.run(start, goal);
+    if (found) {
+      corners = grid.path();
+      plan.cost_m = grid.cost() * map.geometry.resolution_m;
+      plan.expanded = grid.expanded();
+    }
+    return found;
+  };
+  const bool found = spec.method == GridMethod::astar ? search(GridSearch<false>(map, spec.cost_weight))
+                                                      : search(GridSearch<true>(map, spec.cost_weight));
+  if (!found)
+    return Error{"there is no way from " + point_text(start_M) + " to " + point_text(goal_M),
+                 "obstacles, or gaps narrower than the robot, lie between them"};
   plan.points.push_back(start_M);
   const auto add = [&](Vec2 p) {
     const double step = math::hypot(p.x - plan.points.back().x, p.y - plan.points.back().y);
@@ -234,7 +241,7 @@ Result<GridPlan> plan_grid(const CostMap& map, const GridPlannerSpec& spec, Vec2
     plan.length_m += step;
     plan.points.push_back(p);
   };
-  for (const Cell c : search.path()) add(frame.centre(c));
+  for (const Cell c : corners) add(frame.centre(c));
   if (frame.cell(goal_M) == goal) add(goal_M);
   return plan;
 }

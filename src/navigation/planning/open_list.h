@@ -1,9 +1,10 @@
 #pragma once
-/// Open list of a best-first search: a heap with four children per node, which a search of 10^6 cells goes
-/// through with half the cache misses of a binary one.
+/// Open list of a best-first search: a heap with four children per node.
 ///
-/// Ties     least key, then least heuristic (nearest to the goal), then least item: one order everywhere.
-/// Cost     push and pop: logarithm to base 4.
+/// Ties     keys are compared in steps of 2^-24 (6e-8), so that sums which differ by rounding alone are equal;
+///          then the least heuristic (nearest to the goal), then the least item: one order everywhere.
+/// Cost     push and pop: logarithm to base 4, comparisons without branches. A binary heap of doubles visits up
+///          to four times as many cells of an open map, since rounding orders its ties.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,10 +14,17 @@ namespace sandlot::navigation {
 class OpenList {
  public:
   struct Entry {
-    double key;       ///< cost so far + heuristic
-    float heuristic;  ///< decides ties only
-    std::uint32_t item;
+    std::uint64_t key;
+    std::uint64_t tie;
+    std::uint32_t item() const { return static_cast<std::uint32_t>(tie); }
   };
+  /// @param cost       so far; together with the heuristic in [0, 1e11]
+  /// @param heuristic  estimate of the rest
+  static Entry entry(double cost, double heuristic, std::uint32_t item) {
+    constexpr double steps = 1 << 24, most = 4e9;
+    return {static_cast<std::uint64_t>((cost + heuristic) * steps),
+            static_cast<std::uint64_t>(heuristic * 16 < most ? heuristic * 16 : most) << 32 | item};
+  }
   bool empty() const { return heap_.empty(); }
   void push(Entry entry) {
     std::size_t at = heap_.size();
@@ -40,8 +48,7 @@ class OpenList {
       if (first >= heap_.size()) break;
       const std::size_t end = first + 4 < heap_.size() ? first + 4 : heap_.size();
       std::size_t best = first;
-      for (std::size_t k = first + 1; k < end; ++k)
-        if (before(heap_[k], heap_[best])) best = k;
+      for (std::size_t k = first + 1; k < end; ++k) best = before(heap_[k], heap_[best]) ? k : best;
       if (!before(heap_[best], last)) break;
       heap_[at] = heap_[best];
       at = best;
@@ -52,9 +59,8 @@ class OpenList {
 
  private:
   static bool before(const Entry& a, const Entry& b) {
-    if (a.key != b.key) return a.key < b.key;
-    if (a.heuristic != b.heuristic) return a.heuristic < b.heuristic;
-    return a.item < b.item;
+    return static_cast<bool>(static_cast<int>(a.key < b.key) |
+                             (static_cast<int>(a.key == b.key) & static_cast<int>(a.tie < b.tie)));
   }
   std::vector<Entry> heap_;
 };
