@@ -117,9 +117,12 @@ class HybridSearch {
         if (first && best_at_ != hybrid_none) until = std::min(until, 2 * expanded_ + 500);
       }
       for (const Move& move : moves_) {
-        const double price = node.price + change(node, move.direction_B);
+        // Where the search has been, the footprint needs no check.
+        const Pose2 to = moved(node.pose, move, move.amount);
+        if (!frame_.cell({to.x, to.y}) || bins_[key(to)].closed) continue;
         const double driven = drive(node.pose, move);
-        if (std::isfinite(driven)) add(moved(node.pose, move, move.amount), price + driven, at, move, false);
+        if (std::isfinite(driven))
+          add(to, node.price + change(node, move.direction_B) + driven, at, move, false);
       }
     }
     if (best_at_ != hybrid_none) return plan();
@@ -186,15 +189,19 @@ class HybridSearch {
     const double mean = scratch_.empty() ? 0 : cost / static_cast<double>(scratch_.size());
     return move.amount * factor(move) * (1 + spec_.cost_weight * mean / 252);
   }
+  CarPath car_path(const Pose2& pose) const {
+    return spec_.backward ? reeds_shepp(pose, goal_, spec_.turning_radius_m,
+                                        {spec_.backward_factor, spec_.change_price_m})
+                          : dubins(pose, goal_, spec_.turning_radius_m);
+  }
   double heuristic(const Pose2& pose) {
     double ahead = distances_.to_goal(*frame_.cell({pose.x, pose.y}));
+    if (spec_.turn_on_spot) return ahead;
+    // A turn takes an arc as long as this.
+    ahead = std::max(ahead, spec_.turning_radius_m * std::abs(math::wrap_angle(pose.theta - goal_.theta)));
     // The turning radius matters near the goal only: further away the way over cells is as long.
-    if (!spec_.turn_on_spot && !spec_.sideways &&
-        math::hypot(pose.x - goal_.x, pose.y - goal_.y) < 6 * spec_.turning_radius_m)
-      ahead = std::max(ahead, spec_.backward ? reeds_shepp(pose, goal_, spec_.turning_radius_m,
-                                                           {spec_.backward_factor, spec_.change_price_m})
-                                                   .price
-                                             : dubins(pose, goal_, spec_.turning_radius_m).length_m);
+    if (!spec_.sideways && math::hypot(pose.x - goal_.x, pose.y - goal_.y) < 6 * spec_.turning_radius_m)
+      ahead = std::max(ahead, car_path(pose).price);
     return ahead;
   }
   double add(const Pose2& pose, double price, std::uint32_t parent, const Move& move, bool first) {
@@ -210,12 +217,10 @@ class HybridSearch {
 
   /// Tries moves from a node to the goal itself.
   void try_direct(std::uint32_t at, const Node& node) {
-    if (!spec_.turn_on_spot && !spec_.sideways) {
-      const CarPath path = spec_.backward ? reeds_shepp(node.pose, goal_, spec_.turning_radius_m,
-                                                        {spec_.backward_factor, spec_.change_price_m})
-                                          : dubins(node.pose, goal_, spec_.turning_radius_m);
+    if (!spec_.turn_on_spot) {
+      const CarPath path = car_path(node.pose);
       try_moves(at, node, std::span(path.moves.data(), static_cast<std::size_t>(path.count)));
-      return;
+      if (!spec_.sideways) return;
     }
     const double dx = goal_.x - node.pose.x, dy = goal_.y - node.pose.y, length = math::hypot(dx, dy);
     const double course = length > 1e-9 ? math::atan2(dy, dx) : goal_.theta;
