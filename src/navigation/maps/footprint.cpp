@@ -76,6 +76,28 @@ Result<Footprint> Footprint::rectangle(double front, double back, double left, d
   return polygon({{front, left}, {-back, left}, {-back, -right}, {front, -right}});
 }
 
+Result<Footprint> Footprint::grown(double margin_m) const {
+  if (!(margin_m >= 0 && margin_m <= 1000))
+    return Error{"a margin of " + number_text(margin_m) + " m", "it must lie in [0, 1000] m"};
+  if (corners_.empty()) return circle(circumscribed_ + margin_m);
+  std::vector<Vec3> flat;
+  for (const Vec2 c : corners_) flat.push_back({c.x, c.y, 0});
+  const double outward = polygon_area(flat) > 0 ? margin_m : -margin_m;
+  const std::size_t n = corners_.size();
+  // Unit normal of side i, on the right of its direction.
+  const auto normal = [&](std::size_t i) {
+    const Vec2 d = corners_[(i + 1) % n] - corners_[i % n];
+    const double length = std::max(math::hypot(d.x, d.y), 1e-12);
+    return Vec2{d.y / length, -d.x / length};
+  };
+  std::vector<Vec2> moved;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 a = normal(i + n - 1), b = normal(i);
+    moved.push_back(corners_[i] + (outward / std::max(1 + dot(a, b), 0.1)) * (a + b));
+  }
+  return polygon(std::move(moved));
+}
+
 Contact footprint_contact(const CostMap& map, const GridFrame& frame, const Footprint& footprint,
                           const Pose2& X) {
   const auto cell = frame.cell({X.x, X.y});

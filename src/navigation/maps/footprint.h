@@ -20,6 +20,10 @@ class Footprint {
   /// @param front_m, back_m, left_m, right_m  distances of the sides from the robot's origin
   static Result<Footprint> rectangle(double front_m, double back_m, double left_m, double right_m);
 
+  /// The footprint with its outline moved outward; corners stay corners. Errors: a margin that is negative, not
+  /// finite, or so large that sides cross.
+  Result<Footprint> grown(double margin_m) const;
+
   std::span<const Vec2> corners() const { return corners_; }  ///< none: a circle
   /// Radius of the largest circle about the origin within the footprint; 0 when the origin lies outside.
   double inscribed_m() const { return inscribed_; }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -108,6 +109,19 @@ TEST(Footprint, RadiiAreThoseOfThePolygon) {
   EXPECT_FALSE(Footprint::polygon({{0, 0}, {1, 0}, {std::nan(""), 1}}));
   EXPECT_FALSE(Footprint::circle(0));
   EXPECT_FALSE(Footprint::circle(std::numeric_limits<double>::infinity()));
+}
+
+TEST(Footprint, GrowsByItsMarginOnEverySide) {
+  for (const bool clockwise : {false, true}) {
+    std::vector<Vec2> corners{{0.6, 0.3}, {-0.2, 0.3}, {-0.2, -0.3}, {0.6, -0.3}};
+    if (clockwise) std::reverse(corners.begin(), corners.end());
+    const auto grown = Footprint::polygon(corners)->grown(0.1);
+    ASSERT_TRUE(grown);
+    EXPECT_NEAR(grown->inscribed_m(), 0.3, 1e-12);
+    EXPECT_NEAR(grown->circumscribed_m(), std::sqrt(0.49 + 0.16), 1e-12);
+  }
+  EXPECT_NEAR(Footprint::circle(0.3)->grown(0.1)->circumscribed_m(), 0.4, 1e-12);
+  EXPECT_FALSE(Footprint::circle(0.3)->grown(-0.1));
 }
 
 /// Whether a footprint overlaps a lethal cell, by dense points: finds overlaps deeper than the spacing.
