@@ -12,8 +12,9 @@
 /// Errors   start or goal not finite, off the map, or nearer to an obstacle than allowed; no way between them.
 /// Limits   the robot is a disc of the cost map's inscribed radius; headings and turning radius: hybrid_astar.h.
 ///          Theta* is within a few percent of the shortest path, not optimal.
-/// Cost     A*: about 0.35 us a visited cell, of which it visits few where the way is open; memory 14 bytes a cell. Theta*: a line of sight for each pair of
-///          neighbours. Ties are broken by heuristic, then by cell: the same path everywhere.
+/// Cost     A*: about 0.35 us a visited cell, of which it visits few where the way is open; memory 14 bytes a cell.
+///          Theta*: a line of sight where it may pay, about five times as long. Ties are broken by heuristic, then by
+///          cell: the same path everywhere.
 /// Source   P. E. Hart, N. J. Nilsson, B. Raphael (1968); K. Daniel, A. Nash, S. Koenig, A. Felner, Theta*:
 ///          any-angle path planning on grids (2010). Opening again and the integral of costs are ours.
 #include <vector>
