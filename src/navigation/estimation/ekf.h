@@ -16,7 +16,7 @@
 /// Errors     each measurement has an Outcome, counted for each sensor. None stops the filter or changes it silently.
 /// Limits     acceleration is taken as the derivative of the velocity in B (ekf_model.h). A filter that has become too sure
 ///            rejects what is right: `gated_in_row` tells. A pitch of +-90 degrees has no unique roll and yaw.
-/// Cost       about 1 us for a sample of 6 components; a late one costs again all samples after it. No allocation once the
+/// Cost       some microseconds for a sample of 6 components; a late one costs again all samples after it. No allocation once the
 ///            history is full.
 /// Source     parameters and defaults: robot_localization, ROS 2.
 #include <string_view>

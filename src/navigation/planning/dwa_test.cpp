@@ -222,7 +222,7 @@ std::string dwa_text(const DwaScore& s) {
          std::to_string(s.driven_m / s.planned_m) + " of the shortest, worst " + std::to_string(s.worst);
 }
 
-TEST(Dwa, ReachesGoalsInHundredClutters) {
+TEST(SlowDwa, ReachesGoalsInHundredClutters) {
   DwaScore score;
   for (std::uint64_t seed = 0; seed < 100; ++seed) dwa_run(seed, {}, 0, score);
   RecordProperty("differential", dwa_text(score));
@@ -240,7 +240,7 @@ TEST(Dwa, OmniReachesGoalsInClutters) {
   EXPECT_EQ(score.contacts, 0);
 }
 
-TEST(Dwa, AvoidsMovingDiscsInClutters) {
+TEST(SlowDwa, AvoidsMovingDiscsInClutters) {
   DwaScore score;
   for (std::uint64_t seed = 300; seed < 350; ++seed)
     dwa_run(seed, {.min_vx_mps = -0.4, .vx_samples = 9}, 4, score);
