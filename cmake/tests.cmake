@@ -106,7 +106,7 @@ endif()
 file(GLOB sources CONFIGURE_DEPENDS fuzz/*_fuzz.cpp)
 add_library(fuzz_targets OBJECT EXCLUDE_FROM_ALL ${sources})
 target_include_directories(fuzz_targets PRIVATE src)
-target_link_libraries(fuzz_targets PRIVATE sandlot_server sandlot_record)
+target_link_libraries(fuzz_targets PRIVATE sandlot_server sandlot_record sandlot_navigation)
 
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME check_layers COMMAND Python3::Interpreter tools/check_layers.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
