@@ -51,7 +51,8 @@ check_program() {
   "$1" doctor >"$scratch/doctor" || die "doctor: $(cat "$scratch/doctor")"
   grep -q "^ok  *page  *built in" "$scratch/doctor" || die "there is no page: $(cat "$scratch/doctor")"
   grep -qF "$2/share/sandlot/" "$scratch/doctor" || die "uses files of somewhere else: $(cat "$scratch/doctor")"
-  (cd "$scratch" && exec "$1" demo yard --port 0 >"$scratch/served" 2>&1) &
+  : >"$scratch/served"  # there before it is read, whichever of the two comes first
+  (cd "$scratch" && exec "$1" demo yard --port 0 >>"$scratch/served" 2>&1) &
   server=$!
   local address=
   for _ in {1..600}; do
