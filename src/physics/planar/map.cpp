@@ -1,7 +1,9 @@
 #include "physics/planar/map.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "base/prefetch.h"
@@ -367,6 +369,83 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
   return true;
 }
 
+/// Things that many rays from one place may meet, by sectors of direction: a ray then looks at those of its sector, the nearest
+/// first.
+struct Map::Fan {
+  static constexpr std::size_t most = 64, fewest_rays = 16;
+  static constexpr int sectors = 64;
+  struct Thing {
+    double near_m;  ///< none of it is nearer
+    Vec2 centre;    ///< from the rays' origin
+    double radius_m;
+    std::uint32_t index;
+    bool wall;
+  };
+  std::size_t count = 0;
+  std::array<Thing, most> things;
+  std::array<std::uint64_t, sectors> in_sector;  ///< bit k: things[k]
+
+  /// Grows with the angle of d, counter-clockwise from -x; within [0, sectors).
+  static int sector(Vec2 d) {
+    const double across = d.y / (std::abs(d.x) + std::abs(d.y));
+    const double turn = d.x < 0 ? (across < 0 ? -across : 4 - across) : 2 + across;
+    return std::min(static_cast<int>(turn * (sectors / 4)), sectors - 1);
+  }
+};
+
+/// @return false when there are too many things for it to be worth while, or too few rays
+bool Map::spread(const RayJob& job, std::uint32_t ignored, Fan& fan) const {
+  const std::size_t known = filed_.size() + walls_.size();
+  if (job.directions.size() < Fan::fewest_rays || known > Fan::most || !(job.min_m >= 0)) return false;
+  const Vec2 o{job.X_WS.p.x, job.X_WS.p.y};
+  const auto take = [&](Vec2 centre, double radius_m, std::uint32_t index, bool wall) {
+    const Vec2 c = centre - o;
+    // As in passes_by(): far beyond rounding, so that the exact outlines decide alone.
+    const double r = radius_m * (1 + 1e-9) + 1e-9, near_m = std::sqrt(dot(c, c)) * (1 - 1e-9) - r;
+    if (near_m > job.max_m * (1 + 1e-6)) return;
+    fan.things[fan.count++] = {near_m, c, r, index, wall};
+  };
+  for (const std::uint32_t k : filed_)
+    if (discs_[k].instance != ignored) take(discs_[k].centre, discs_[k].radius_m, k, false);
+  for (std::uint32_t k = 0; k < walls_.size(); ++k)
+    if (walls_[k].instance != ignored) take(walls_[k].outline.centre, walls_[k].outline.radius_m, k, true);
+  std::sort(fan.things.begin(), fan.things.begin() + static_cast<std::ptrdiff_t>(fan.count),
+            [](const Fan::Thing& a, const Fan::Thing& b) { return a.near_m < b.near_m; });
+  fan.in_sector.fill(0);
+  for (std::size_t k = 0; k < fan.count; ++k) {
+    const Fan::Thing& thing = fan.things[k];
+    int first = 0, last = Fan::sectors - 1;
+    const double far2 = dot(thing.centre, thing.centre);
+    if (thing.near_m > 0 && far2 < 1e30) {
+      // The tangents from the origin, longer than 1 by the same factor; a sector more on either side for their rounding.
+      const double s = thing.radius_m, c = std::sqrt(std::max(0.0, far2 - s * s));
+      const Vec2 m = thing.centre;
+      first = Fan::sector({c * m.x + s * m.y, c * m.y - s * m.x}) - 1;
+      last = Fan::sector({c * m.x - s * m.y, c * m.y + s * m.x}) + 1;
+      if (last < first) last += Fan::sectors;
+    }
+    for (int i = first; i <= last; ++i)
+      fan.in_sector[static_cast<std::size_t>(i) % Fan::sectors] |= std::uint64_t{1} << k;
+  }
+  return true;
+}
+
+void Map::meet_in_direction(const Ray& ray, const Fan& fan, Hit& hit) const {
+  for (std::uint64_t left = fan.in_sector[static_cast<std::size_t>(Fan::sector(ray.direction))]; left != 0;
+       left &= left - 1) {
+    const Fan::Thing& thing = fan.things[static_cast<std::size_t>(std::countr_zero(left))];
+    if (thing.near_m > 0 && thing.near_m * thing.near_m > hit.t * hit.t * ray.length2 * (1 + 1e-6)) return;
+    if (thing.wall) {
+      const Outline& outline = walls_[thing.index].outline;
+      if (!passes_by(ray, outline.centre, outline.radius_m, hit)) meet_wall(ray, thing.index, hit);
+    } else if (const Disc& disc = discs_[thing.index]; disc.silhouette == ~0u) {
+      hit.meet(ray, disc);
+    } else {
+      meet_silhouette(ray, disc, hit);
+    }
+  }
+}
+
 void Map::expect(const RayJob& job) const {
   constexpr std::size_t few = 4096;  // that stay near the processor
   if (discs_.size() < few) return;
@@ -382,7 +461,8 @@ void Map::cast(const RayJob& job, std::uint32_t ignored) const {
              z = rotate(job.X_WS.q, {0, 0, 1});
   const Vec3 o = job.X_WS.p;
   Reach reach;
-  const bool near = gather(job, ignored, reach);
+  Fan fan;
+  const bool near = gather(job, ignored, reach), spreads = !near && spread(job, ignored, fan);
   const bool anything = area_.low.x <= area_.high.x;
   const bool inside = o.x >= area_.low.x && o.y >= area_.low.y && o.x <= area_.high.x && o.y <= area_.high.y;
   const Start start = inside ? start_at({o.x, o.y}, {o.x, o.y}) : Start{};
@@ -397,8 +477,9 @@ void Map::cast(const RayJob& job, std::uint32_t ignored) const {
                   job.min_m,  job.max_m, ignored};
     Hit hit{job.max_m};
     if (length2 > 1e-20) {
-      if (!everywhere_.empty()) meet_walls(ray, everywhere_, hit);
-      if (near)
+      if (!spreads && !everywhere_.empty()) meet_walls(ray, everywhere_, hit);
+      if (spreads) meet_in_direction(ray, fan, hit);
+      else if (near)
         for (std::uint32_t k = 0; k < reach.count; ++k) {
           if (reach.discs[k]->silhouette == ~0u) hit.meet(ray, *reach.discs[k]);
           else meet_silhouette(ray, *reach.discs[k], hit);

@@ -195,6 +195,49 @@ TEST(PlanarRays, AgreeWithBruteForceOnRandomScenes) {
   EXPECT_LT(hits, rays * 3 / 4);
 }
 
+TEST(PlanarRays, ManyOfOneJobSeeWhatEachSeesAlone) {
+  constexpr std::size_t count = 300;
+  std::size_t hits = 0;
+  for (std::uint64_t sample = 0; sample < 60; ++sample) {
+    Crowd crowd(sample, 4, sample % 3 == 0, sample % 4 == 3 ? 12 : 40);
+    // Shapes that are more than a disc, and one that the fan starts in or touches.
+    crowd.w.add(model_of(Box{{2, 0.3, 1}}), at(1, 1, 0.3 + static_cast<double>(sample), 0.5));
+    const InstanceId self = crowd.w.add(model_of(Box{{0.4, 0.4, 1}}), at(-2, 1, 0, 0.5));
+    Stream r(6, 0, Purpose::experiment, sample);
+    const Vec3 from = sample % 5 == 0 ? Vec3{-2.2, 1, 0.5} : Vec3{r.uniform(-6, 6), r.uniform(-6, 6), 0.5};
+    const std::uint32_t ignore = sample % 2 ? no_body : crowd.w.engine.bodies(self)[0].index;
+    std::vector<Vec3> directions;
+    for (std::size_t k = 0; k < count; ++k) {
+      Vec3 d{r.normal(), r.normal(), k % 7 == 0 ? 0.1 * r.normal() : 0};
+      if (k < 8)
+        d = {k % 4 == 0   ? 1.0
+             : k % 4 == 1 ? -1.0
+                          : 0.0,
+             k % 4 == 2   ? 1.0
+             : k % 4 == 3 ? -1.0
+             : k < 4      ? 0.0
+                          : -0.0,
+             0};
+      directions.push_back(normalised(d));
+    }
+    const double min_m = sample % 4 ? 0 : 0.3,
+                 max_m = sample % 6 == 5 ? std::numeric_limits<double>::infinity() : 20;
+    std::vector<float> together(count);
+    std::vector<std::uint32_t> bodies(count);
+    const RayJob job{{from, {}}, directions, min_m, max_m, ignore, together, bodies};
+    crowd.w.engine.rays()->cast({&job, 1});
+    for (std::size_t k = 0; k < count; ++k) {
+      std::uint32_t body = 0;
+      const float alone = crowd.w.see(from, directions[k], max_m, ignore, &body, min_m);
+      ASSERT_EQ(together[k], alone) << sample << " " << k;
+      ASSERT_EQ(bodies[k], body) << sample << " " << k;
+      hits += body != no_body;
+    }
+  }
+  EXPECT_GT(hits, 60 * count / 4);
+  EXPECT_LT(hits, 60 * count);
+}
+
 TEST(PlanarRays, TheSensorsPoseTurnsTheFan) {
   World w;
   w.add(robot_model(), at(3, 0));
