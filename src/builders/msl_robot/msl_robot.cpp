@@ -68,11 +68,12 @@ struct Spec {
           s.mass_kg);
   }
   Status check(const Node& node, const std::string& path) const {
-    if (chassis != Chassis::omni)
-      for (const char* const key : {"wheels", "rollers"})
-        if (const Node* const given = node.find(key))
-          return given->error("only the chassis omni can choose its wheels", "leave it out",
-                              path + "/" + key);
+    if (chassis != Chassis::omni) {
+      // Rollers that are none suit every chassis: a team lays such a robot over another's description.
+      const char* const key = rollers > 0 ? "rollers" : "wheels";
+      if (const Node* const given = node.find(key))
+        return given->error("only the chassis omni can choose its wheels", "leave it out", path + "/" + key);
+    }
     if (rollers == 0 || rollers >= 4) return {};
     return node.find("rollers")->error("a wheel cannot go round on " + std::to_string(rollers) + " rollers",
                                        "give at least 4, or 0 for wheels that slide", path + "/rollers");
