@@ -80,8 +80,8 @@ Status add_level_table(const ReproduceContext& context, ReportPage& page) {
   page.paragraph(
       fmt::format("Simulated time over the time that its ticks take, on one core, of the same match of ten "
                   "robots with all their sensors and the same "
-                  "programs: scenarios/match.yaml with one seed, from {:g} s to {:g} s. Ticks of 4 ms with "
-                  "two physics steps; with rollers 2 ms. "
+                  "programs: scenarios/match.yaml with one seed, from {:g} s to {:g} s. Steps of 4 ms, "
+                  "with rollers of 2 ms. "
                   "Rows: what eyes and lasers give; columns: the wheels.",
                   begin_s, end_s));
   std::vector<std::string> head{"senses"};
