@@ -20,5 +20,6 @@
 #include "messages/sensor_msgs.h"
 #include "messages/sensor_ranges.h"
 #include "messages/std_msgs.h"
+#include "messages/stereo_msgs.h"
 #include "messages/trajectory_msgs.h"
 #include "messages/vision_msgs.h"

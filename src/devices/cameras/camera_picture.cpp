@@ -67,25 +67,29 @@ void ColorImage::compress(Topic<msg::CompressedImage>* topic, Compression compre
   topic->message.format = compression_names[static_cast<int>(compression)].name;
 }
 
-std::span<std::uint8_t> ColorImage::rgb() {
-  // Sizes are set again: a snapshot may hold others.
-  msg::Image& image = topic_->message;
-  image.width = static_cast<std::uint32_t>(width_);
-  image.height = static_cast<std::uint32_t>(height_);
-  image.step = image.width * (format_ == Format::mono8 ? 1 : 3);
-  image.data.resize(static_cast<std::size_t>(image.step) * image.height);
-  if (format_ != Format::mono8) return image.data;
-  rgb_.resize(3 * image.data.size());
+std::span<std::uint8_t> ColorImage::rgb(bool published) {
+  const std::size_t step = static_cast<std::size_t>(width_) * (format_ == Format::mono8 ? 1 : 3);
+  if (published) {
+    // Sizes are set again: a snapshot may hold others.
+    msg::Image& image = topic_->message;
+    image.width = static_cast<std::uint32_t>(width_);
+    image.height = static_cast<std::uint32_t>(height_);
+    image.step = static_cast<std::uint32_t>(step);
+  }
+  std::vector<std::uint8_t>& data = published ? topic_->message.data : hidden_;
+  data.resize(step * static_cast<std::size_t>(height_));
+  if (format_ != Format::mono8) return data;
+  rgb_.resize(3 * data.size());
   return rgb_;
 }
 
 void ColorImage::finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, double errors,
-                        std::uint64_t sample, const Context& context) {
-  msg::Image& image = topic_->message;
+                        std::uint64_t sample, const Context& context, bool published) {
+  std::vector<std::uint8_t>& data = published ? topic_->message.data : hidden_;
   const int channels = format_ == Format::mono8 ? 1 : 3;
   if (channels == 1)
-    for (std::size_t i = 0; i < image.data.size(); ++i)
-      image.data[i] = static_cast<std::uint8_t>(
+    for (std::size_t i = 0; i < data.size(); ++i)
+      data[i] = static_cast<std::uint8_t>(
           (299U * rgb_[3 * i] + 587U * rgb_[3 * i + 1] + 114U * rgb_[3 * i + 2] + 500U) / 1000U);
   const Stream random = Stream(context.seed, key_, Purpose::noise, sample).fork(use_);
   std::array<std::uint8_t, 256> shown{};
@@ -93,20 +97,21 @@ void ColorImage::finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, d
     for (std::size_t i = 0; i < shown.size(); ++i)
       shown[i] = static_cast<std::uint8_t>(
           std::lround(255 * math::pow(static_cast<double>(i) / 255, 1 / keys.gamma)));
-  const std::size_t row = image.step;
-  parallel_for(image.height, 16, [&](std::size_t begin, std::size_t end) {
-    const std::span<std::uint8_t> rows = std::span(image.data).subspan(begin * row, (end - begin) * row);
+  const std::size_t row = static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels);
+  parallel_for(static_cast<std::size_t>(height_), 16, [&](std::size_t begin, std::size_t end) {
+    const std::span<std::uint8_t> rows = std::span(data).subspan(begin * row, (end - begin) * row);
     noise_.corrupt(noise, rows, width_, height_, channels, random, errors, static_cast<int>(begin));
     if (keys.gamma != 1)
       for (std::uint8_t& value : rows) value = shown[value];
     if (format_ == Format::bgr8)
       for (std::size_t i = 0; i + 2 < rows.size(); i += 3) std::swap(rows[i], rows[i + 2]);
   });
+  if (!published) return;
   topic_->publish(context.now);
   if (!compressed_) return;
-  std::span<const std::uint8_t> pixels = image.data;
+  std::span<const std::uint8_t> pixels = data;
   if (format_ == Format::bgr8) {
-    rgb_.assign(image.data.begin(), image.data.end());
+    rgb_.assign(data.begin(), data.end());
     for (std::size_t i = 0; i + 2 < rgb_.size(); i += 3) std::swap(rgb_[i], rgb_[i + 2]);
     pixels = rgb_;
   }

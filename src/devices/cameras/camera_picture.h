@@ -80,9 +80,15 @@ class ColorImage {
   void compress(Topic<msg::CompressedImage>* topic, Compression compression, int quality,
                 ImageEncoder encode);
   /// Room for the next picture, made at the first one.
-  std::span<std::uint8_t> rgb();
+  /// @param published  false: for the device itself; its topic stays as it is, since what is on it is State
+  std::span<std::uint8_t> rgb(bool published = true);
+  /// @param published  as it was in rgb()
   void finish(const ExposureKeys& keys, const ImageNoiseSpec& noise, double errors, std::uint64_t sample,
-              const Context& context);
+              const Context& context, bool published = true);
+  /// The latest picture in its format, rows without gaps. @param published  as it was in finish()
+  std::span<const std::uint8_t> pixels(bool published) const {
+    return published ? topic_->message.data : hidden_;
+  }
 
  private:
   Topic<msg::Image>* topic_ = nullptr;
@@ -93,7 +99,8 @@ class ColorImage {
   int width_ = 0, height_ = 0;
   std::uint64_t key_ = 0, use_ = 0;
   ImageNoise noise_;
-  std::vector<std::uint8_t> rgb_;  ///< of mono8 and for compressing bgr8: others are drawn in place
+  std::vector<std::uint8_t> rgb_;     ///< of mono8 and for compressing bgr8: others are drawn in place
+  std::vector<std::uint8_t> hidden_;  ///< pixels that are not shown
 };
 
 /// Sizes and encoding. There are no pixels before the first picture: those of a level that is off would be State.

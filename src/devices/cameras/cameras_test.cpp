@@ -9,6 +9,7 @@
 
 #include "devices/cameras/camera_lens.h"
 #include "devices/test_rig.h"
+#include "messages/stereo_msgs.h"
 #include "messages/vision_msgs.h"
 #include "optics/picture.h"
 
@@ -486,6 +487,48 @@ void wall(Stage& stage) {
   shape.X_GC.p = {3.5, 10, 0};
   shape.shape = Box{{1, 22, 20}};
   stage.shapes.push_back(shape);
+}
+
+/// The wall at 3 m, f b = 40 * 0.5 = 20 m: the disparity is 20 / 3.
+TEST(Cameras, StereoComputesDisparitiesFromTrueDepths) {
+  constexpr std::uint32_t closed_form_bit = 4;
+  Stage stage("stereo_camera");
+  wall(stage);
+  ASSERT_TRUE(
+      stage.add("eye", with({{"baseline", "0.5"}, {"match_std", "0"}, {"points", "true"}}), closed_form_bit));
+  stage.draw();
+  const auto& found = stage.topic<msg::DisparityImage>("eye/closed_form").message;
+  EXPECT_EQ(found.image.encoding, "32FC1");
+  EXPECT_FLOAT_EQ(found.f, 40);
+  EXPECT_FLOAT_EQ(found.t, 0.5);
+  EXPECT_NEAR(depth_at(found.image, 20, 30), 20.0 / 3, 1e-4);
+  EXPECT_EQ(depth_at(found.image, 5, 30), -1) << "the right eye's picture ends there";
+  EXPECT_EQ(depth_at(found.image, 75, 30), -1) << "there is no surface";
+  // The ball's front at 0.5 m has 40 pixels, and hides the wall from the right eye where it is seen there: 40 to 20/3 farther right.
+  EXPECT_NEAR(depth_at(found.image, 40, 30), 40, 1);
+  EXPECT_EQ(depth_at(found.image, 8, 30), -1) << "behind the ball for the right eye";
+  const auto& cloud = stage.topic<msg::PointCloud2>("eye/closed_form/points").message;
+  float point[3];
+  std::memcpy(point, cloud.data.data() + 12 * (30 * found.image.width + 20), 12);
+  EXPECT_NEAR(point[2], 3, 1e-4);
+  EXPECT_NEAR(point[0], 3 * (20 - 39.5) / 40, 1e-4);
+  std::memcpy(point, cloud.data.data() + 12 * (30 * found.image.width + 75), 12);
+  EXPECT_TRUE(std::isnan(point[0]));
+  EXPECT_TRUE(stage.picture("eye/left/image").data.empty()) << "no picture is drawn";
+
+  Stage noisy("stereo_camera");
+  wall(noisy);
+  ASSERT_TRUE(noisy.add("eye", with({{"baseline", "0.5"}, {"match_std", "0.5"}}), closed_form_bit));
+  noisy.draw();
+  const auto& seen = noisy.topic<msg::DisparityImage>("eye/closed_form").message;
+  double n = 0, sum = 0, square = 0;
+  for (std::uint32_t v = 0; v < 12; ++v)
+    for (std::uint32_t u = 10; u < 50; ++u) {
+      const double d = static_cast<double>(depth_at(seen.image, u, v));
+      ++n, sum += d - 20.0 / 3, square += (d - 20.0 / 3) * (d - 20.0 / 3);
+    }
+  EXPECT_NEAR(sum / n, 0, 4 * 0.5 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(square / n), 0.5, 4 * 0.5 / std::sqrt(2 * n));
 }
 
 TEST(Cameras, DepthIsMeasuredAlongTheAxis) {
