@@ -10,6 +10,7 @@
   controller(footballer)                \
   controller(forager)                   \
   controller(formation)                 \
+  controller(four_wheel_steer)          \
   controller(odometry_estimator)        \
   controller(playback)                  \
   controller(predator)                  \

@@ -56,8 +56,14 @@ Result<std::vector<Sample>> read_samples(std::string_view text) {
   return samples;
 }
 
-Status Playback::init(const Description& robot) {
-  SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.to));
+Status Playback::init(const Description& robot, Outputs& out) {
+  if (spec.publish.empty()) {
+    SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.to));
+  } else if (spec.to.empty()) {
+    shown = out.publish<msg::Twist>(spec.publish);
+  } else {
+    return Error{"both a drive and a topic are given", "leave one of them out", {}, "/publish"};
+  }
   if (spec.samples.empty())
     return spec.file.empty()
                ? Error{"there is nothing to play back", "give file: run.mcap, or samples", {}, "/file"}
@@ -91,7 +97,8 @@ void Playback::step(const Observation& obs, Command& cmd) {
     twist.linear.y = held.vy_mps;
     twist.angular.z = held.wz_radps;
   }
-  cmd.set(drive, twist);
+  if (shown) cmd.publish(*shown, twist);
+  else cmd.set(drive, twist);
 }
 
 extern const ControllerKind kind;

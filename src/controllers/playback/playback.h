@@ -3,13 +3,14 @@
 ///
 /// Reads    nothing. The velocities are in `samples`; where a scenario names a recording (`file`), they are put there
 ///          while the scenario is loaded, so that a snapshot no longer needs the recording.
-/// Orders   a Twist for the drive `to` in every control step: vx, vy [m/s], wz [rad/s] in the robot's frame.
+/// Orders   a Twist for the drive `to` in every control step: vx, vy [m/s], wz [rad/s] in the robot's frame. With `publish` it
+///          orders nothing and publishes the Twist on a topic of that name for another program, as a joystick does.
 /// Time     sample times count from the beginning of the recording; the one of time t is given in the first control step
 ///          not before start + t / rate, and holds until the next. Before the first and after the last: zero.
 ///          With `loop` the recording begins again at the time of its last sample.
 /// Limits   open loop: another robot, or other ground, drifts away from the recorded path. No interpolation.
 /// Cost     a binary search per step.
-/// Errors   no samples, rows that are not four numbers, times that run backwards.
+/// Errors   both `to` and `publish`; no samples, rows that are not four numbers, times that run backwards.
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ std::string samples_text(const std::vector<Sample>& samples);
 Result<std::vector<Sample>> read_samples(std::string_view text);
 
 struct Spec {
-  std::string file, topic, commands, to, samples;
+  std::string file, topic, commands, to, publish, samples;
   double start_s = 0;
   double rate = 1;
   bool loop = false;
@@ -47,6 +48,11 @@ struct Spec {
           s.commands);
     visit(Field{"to", "", "Drive of this robot; not needed when it has only one."}, s.to);
     visit(
+        Field{
+            "publish", "",
+            "Topic, such as cmd_vel, that shows the velocities to other programs; no drive is ordered then."},
+        s.publish);
+    visit(
         Field{"samples", "", "Rows of time, vx, vy, wz; instead of a file.", 0, 0, Field::none, most_letters},
         s.samples);
     visit(Field{"start", "s", "Simulated time at which the recording begins.", 0, 1e9}, s.start_s);
@@ -63,9 +69,10 @@ struct Playback {
   State state;
 
   Actuator<msg::Twist> drive;
+  std::optional<Publication<msg::Twist>> shown;  ///< instead of the drive
   std::vector<Sample> samples;
 
-  Status init(const Description& robot);
+  Status init(const Description& robot, Outputs& out);
   void step(const Observation& obs, Command& cmd);
 };
 

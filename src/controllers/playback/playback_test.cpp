@@ -18,6 +18,11 @@ Playback player(std::string samples) {
   return out;
 }
 
+Status init(Playback& controller) {
+  Outputs none("rover/controller");
+  return controller.init(description(), none);
+}
+
 /// vx, vy, wz ordered at `now_s`.
 std::vector<double> ordered(Playback& controller, double now_s) {
   const Observation obs(Time::from_s(now_s), {}, {}, Stream(1, 2, Purpose::controller, 3));
@@ -33,7 +38,7 @@ using V = std::vector<double>;
 
 TEST(Playback, ASampleHoldsUntilTheNextAndTheLastEndsIt) {
   Playback controller = player("0.5 1 2 3\n1, -0.25, 0, 4\r\n\n2;0;0;9\n");
-  ASSERT_TRUE(controller.init(description()));
+  ASSERT_TRUE(init(controller));
   EXPECT_EQ(ordered(controller, 0.4), (V{0, 0, 0})) << "before the first";
   EXPECT_EQ(ordered(controller, 0.5), (V{1, 2, 3}));
   EXPECT_EQ(ordered(controller, 0.9), (V{1, 2, 3}));
@@ -47,7 +52,7 @@ TEST(Playback, StartAndRateMoveTheTimesAndLeaveTheVelocities) {
   Playback controller = player("0 1 0 0\n1 2 0 0\n2 0 0 0");
   controller.spec.start_s = 10;
   controller.spec.rate = 4;
-  ASSERT_TRUE(controller.init(description()));
+  ASSERT_TRUE(init(controller));
   EXPECT_EQ(ordered(controller, 9.99), (V{0, 0, 0}));
   EXPECT_EQ(ordered(controller, 10), (V{1, 0, 0}));
   EXPECT_EQ(ordered(controller, 10.24), (V{1, 0, 0}));
@@ -58,10 +63,29 @@ TEST(Playback, StartAndRateMoveTheTimesAndLeaveTheVelocities) {
 TEST(Playback, ALoopBeginsAgainAtTheTimeOfTheLastSample) {
   Playback controller = player("0 1 0 0\n1 2 0 0\n3 7 0 0");
   controller.spec.loop = true;
-  ASSERT_TRUE(controller.init(description()));
+  ASSERT_TRUE(init(controller));
   EXPECT_EQ(ordered(controller, 2.9), (V{2, 0, 0}));
   EXPECT_EQ(ordered(controller, 3.0), (V{1, 0, 0}));
   EXPECT_EQ(ordered(controller, 301.5), (V{2, 0, 0})) << "1.5 s into round 100";
+}
+
+TEST(Playback, PublishesForAnotherProgramInsteadOfOrdering) {
+  Playback controller = player("0 1 2 3\n1 0 0 0");
+  controller.spec.publish = "cmd_vel";
+  Outputs outputs("rover/joystick");
+  ASSERT_TRUE(controller.init({.robot = "rover"}, outputs)) << "it needs no drive";
+  Command cmd;
+  cmd.bind(&outputs);
+  controller.step(Observation(Time::from_s(0.5), {}, {}, Stream(1, 2, Purpose::controller, 3)), cmd);
+  outputs.commit(Time::from_s(0.5));
+  EXPECT_TRUE(cmd.orders().empty());
+  ASSERT_EQ(outputs.all().size(), 1u);
+  const auto* const shown = topic_cast<msg::Twist>(outputs.all()[0].topic.get());
+  EXPECT_EQ(shown->name(), "/rover/joystick/cmd_vel");
+  EXPECT_EQ(shown->message.linear.y, 2);
+  EXPECT_EQ(shown->message.angular.z, 3);
+  controller.spec.to = "drive";
+  EXPECT_EQ(controller.init(description(), outputs).error().path, "/publish");
 }
 
 TEST(Playback, TextKeepsEveryBitOfASample) {
@@ -79,7 +103,7 @@ TEST(Playback, TextKeepsEveryBitOfASample) {
 TEST(Playback, RefusesWhatItCannotPlay) {
   const auto complaint = [](std::string samples) {
     Playback controller = player(std::move(samples));
-    const Status ready = controller.init(description());
+    const Status ready = init(controller);
     return ready ? "" : ready.error().what;
   };
   EXPECT_EQ(complaint(""), "there is nothing to play back");
@@ -91,10 +115,10 @@ TEST(Playback, RefusesWhatItCannotPlay) {
   EXPECT_EQ(complaint("1 0 0 0\n0.5 0 0 0"), "row 2 is earlier than the one above it");
   Playback unread;
   unread.spec.file = "run.mcap";
-  EXPECT_EQ(unread.init(description()).error().what, "the recording 'run.mcap' was not read");
+  EXPECT_EQ(init(unread).error().what, "the recording 'run.mcap' was not read");
   Playback still = player("0 1 0 0");
   still.spec.loop = true;
-  EXPECT_EQ(still.init(description()).error().path, "/loop");
+  EXPECT_EQ(init(still).error().path, "/loop");
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#include "statistics/signals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/math.h"
+#include "base/random.h"
+
+namespace sandlot::statistics {
+namespace {
+
+using Signal = std::vector<double>;
+
+TEST(PercentError, IsTheMeanErrorOverTheMeanCommand) {
+  // Errors 0.1, 0.2, 0.1, 0; commands 1, 2, 1, 0: 100 * 0.4 / 4.
+  EXPECT_NEAR(*percent_error(Signal{1, -2, 1, 0}, Signal{1.1, -1.8, 0.9, 0}), 10, 1e-12);
+  // Not the mean of the percentages of samples, which has no value here; motion that was not commanded counts.
+  EXPECT_NEAR(*percent_error(Signal{0, 2}, Signal{0.5, 2}), 25, 1e-12);
+  EXPECT_EQ(*percent_error(Signal{3, -4}, Signal{3, -4}), 0);
+}
+
+TEST(PercentError, RefusesWhatHasNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(percent_error({}, {}));
+  EXPECT_FALSE(percent_error(Signal{1, 2}, Signal{1}));
+  EXPECT_FALSE(percent_error(Signal{0, 0}, Signal{1, 1}));
+  EXPECT_FALSE(percent_error(Signal{1, nan}, Signal{1, 1}));
+  EXPECT_FALSE(percent_error(Signal{1, 1}, Signal{1, inf}));
+}
+
+/// Two sinusoids without a common period, delayed.
+Signal wave(std::size_t n, double dt_s, double delay_s, double gain = 1, double offset = 0) {
+  Signal out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) * dt_s - delay_s;
+    out.push_back(offset + gain * (math::sin(2 * t) + 0.5 * math::sin(3.7 * t + 1)));
+  }
+  return out;
+}
+
+TEST(Lag, FindsDelaysOfPartsOfASample) {
+  // Highest frequency 3.7 rad/s, dt 0.02: the parabola errs by less than dt (w dt)^2 / 24 = 5e-6 s. The window has 30 s, about
+  // ten periods of the difference frequency; its ends bend r(k) by parts of a percent of a sample: 1e-4 s.
+  constexpr double dt = 0.02;
+  for (const double delay : {0.0, 0.19, 0.1934, -0.07, 0.005}) {
+    const auto found = lag(wave(1500, dt, 0), wave(1500, dt, delay), dt, 0.5);
+    ASSERT_TRUE(found) << delay;
+    EXPECT_NEAR(found->lag_s, delay, 1e-4) << delay;
+    EXPECT_GT(found->correlation, 0.999);
+  }
+}
+
+TEST(Lag, GainAndOffsetDoNotMatterAndAWrongSignDoes) {
+  constexpr double dt = 0.02;
+  const auto scaled = lag(wave(1500, dt, 0), wave(1500, dt, 0.19, 0.2, 7), dt, 0.5);
+  ASSERT_TRUE(scaled);
+  EXPECT_NEAR(scaled->lag_s, 0.19, 1e-4);
+  const auto mirrored = lag(wave(1500, dt, 0), wave(1500, dt, 0.19, -1), dt, 0.5);
+  EXPECT_TRUE(!mirrored || mirrored->correlation < 0.9);
+}
+
+TEST(Lag, WhiteNoiseThatIsShiftedIsFoundToTheSample) {
+  // Shifted by 7 samples: r(7) = 1, all others about 1 / sqrt(n).
+  Stream random(1, 2, Purpose::experiment, 3);
+  Signal noise;
+  for (int i = 0; i < 500; ++i) noise.push_back(random.normal());
+  const Signal later(noise.begin(), noise.end() - 7), first(noise.begin() + 7, noise.end());
+  const auto found = lag(first, later, 0.1, 2);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->lag_s, 0.7,
+              0.01);  // neighbours of 5 / sqrt(493) would move it by 0.1 * 0.23 / 2 at most
+  EXPECT_NEAR(found->correlation, 1, 1e-12);
+}
+
+TEST(Lag, RefusesWhatHasNone) {
+  const Signal good = wave(100, 0.1, 0), flat(100, 3.0);
+  EXPECT_FALSE(lag(good, flat, 0.1, 1));
+  EXPECT_FALSE(lag(flat, good, 0.1, 1));
+  EXPECT_FALSE(lag(good, wave(99, 0.1, 0), 0.1, 1));
+  EXPECT_FALSE(lag({}, {}, 0.1, 1));
+  EXPECT_FALSE(lag(good, good, 0, 1));
+  EXPECT_FALSE(lag(good, good, 0.1, 0.05));
+  EXPECT_FALSE(lag(good, good, 0.1, 9.7));
+  EXPECT_FALSE(lag(good, good, 0.1, 1e300));
+  EXPECT_FALSE(lag(good, good, std::nan(""), 1));
+  Signal broken = good;
+  broken[5] = std::nan("");
+  EXPECT_FALSE(lag(good, broken, 0.1, 1));
+  // The true lag of 0.19 s lies beyond 0.1 s.
+  EXPECT_FALSE(lag(wave(1500, 0.02, 0), wave(1500, 0.02, 0.19), 0.02, 0.1));
+}
+
+}  // namespace
+}  // namespace sandlot::statistics
