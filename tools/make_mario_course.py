@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Writes scenarios/mario_course.csv: a joystick as it is recorded, velocities for scenarios/mario_drive.yaml.
+"""Writes scenarios/parts/mario_course.yaml: a joystick as it is recorded, velocities for scenarios/mario_drive.yaml.
 
-    tools/make_mario_course.py [FILE]      FILE is scenarios/mario_course.csv when left out
+    tools/make_mario_course.py [FILE]      FILE is scenarios/parts/mario_course.yaml when left out
 
 The paper recorded a joystick and does not print the recording: this course is ours. It has all combinations of v_x, v_y and turning
 rate, as the paper's has. A hand moves two sticks from one position to the next within 0.8 s and trembles; the driver
 of the joystick has a dead zone, 127 steps each way, and 20 messages a second.
+
+The error in percent of an axis is about the lag times how much the command goes up and down per way: it depends on the course as much as on the
+robot. How long each axis is held was chosen so that the simulated robot's errors come near those of the paper's simulation, v_y held
+longest, turns shortest. So these three are no evidence; those of the robot with latency are.
 """
 import math
 import pathlib
@@ -18,21 +22,31 @@ DEAD_ZONE = 0.05
 POSITIONS = [
     (0, 0, 0, 0),
     (1, 0.5, 0, 0),
-    (5, 0.5, 0, 0.5),
-    (10, 0.5, 0, -0.6),
-    (15, 0.4, 0.3, 0),
-    (20, 0.4, 0.25, 0.4),
-    (26, 0.4, -0.3, -0.4),
-    (32, 0, 0, 0),
-    (34, 0, 0.4, 0),
-    (38, 0, 0.4, -0.4),
-    (43, 0, 0, 0),
-    (45, 0, 0, 0.8),
-    (49, 0, 0, 0),
-    (51, -0.5, 0, 0),
-    (54, -0.4, 0, -0.5),
-    (58, 0, 0, 0),
-    (60, 0, 0, 0),
+    (2.2, 0.2, 0, 0),
+    (3.2, 0.5, 0, 0.6),
+    (6, 0.5, 0.4, 0),
+    (9, 0.5, 0.4, -0.6),
+    (12, 0.25, 0.4, 0),
+    (15, 0, 0.4, 0),
+    (18, 0, 0.4, 0.15),
+    (20, 0.5, 0.4, 0),
+    (22, 0.5, 0.4, 0.6),
+    (25, 0.5, -0.4, 0),
+    (28, 0.5, -0.4, -0.6),
+    (31, 0, -0.4, 0),
+    (34, 0.5, -0.4, 0),
+    (36, 0.5, -0.4, 0.6),
+    (39, 0.5, -0.4, 0),
+    (41, 0, 0, 0),
+    (43, 0, 0, 0.8),
+    (47, 0, 0, 0),
+    (49, -0.5, 0, 0),
+    (51, -0.5, 0, -0.6),
+    (52.5, -0.25, 0, -0.6),
+    (54, 0, 0, 0),
+    (55.5, 0.5, 0, 0),
+    (57.5, 0, 0, 0),
+    (59, 0, 0, 0),
 ]
 
 
@@ -57,12 +71,16 @@ def shown(axis, t):
 
 
 def main():
-    default = pathlib.Path(__file__).parent.parent / "scenarios" / "mario_course.csv"
+    default = pathlib.Path(__file__).parent.parent / "scenarios" / "parts" / "mario_course.yaml"
     path = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
-    rows = ["time,vx,vy,wz"]
-    for k in range(POSITIONS[-1][0] * RATE + 1):
+    rows = [
+        "# A joystick as it is recorded, made by tools/make_mario_course.py: time [s], v_x, v_y [m/s], turning rate [rad/s].",
+        "vars:",
+        "  course: |",
+    ]
+    for k in range(round(POSITIONS[-1][0] * RATE) + 1):
         t = k / RATE
-        rows.append(f"{t:g}," + ",".join(f"{shown(axis, t):.4f}" for axis in range(3)))
+        rows.append(f"    {t:g} " + " ".join(f"{shown(axis, t):.4g}" for axis in range(3)))
     path.write_text("\n".join(rows) + "\n")
 
 

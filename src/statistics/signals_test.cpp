@@ -15,8 +15,8 @@ namespace {
 using Signal = std::vector<double>;
 
 TEST(PercentError, IsTheMeanErrorOverTheMeanCommand) {
-  // Errors 0.1, 0.2, 0.1, 0; commands 1, 2, 1, 0: 100 * 0.4 / 4.
-  EXPECT_NEAR(*percent_error(Signal{1, -2, 1, 0}, Signal{1.1, -1.8, 0.9, 0}), 10, 1e-12);
+  // Errors 0.1, 0.2, 0.1, 0; commands 2, 4, 2, 0: 100 * 0.4 / 8.
+  EXPECT_NEAR(*percent_error(Signal{2, -4, 2, 0}, Signal{2.1, -3.8, 1.9, 0}), 5, 1e-12);
   // Not the mean of the percentages of samples, which has no value here; motion that was not commanded counts.
   EXPECT_NEAR(*percent_error(Signal{0, 2}, Signal{0.5, 2}), 25, 1e-12);
   EXPECT_EQ(*percent_error(Signal{3, -4}, Signal{3, -4}), 0);

@@ -238,8 +238,10 @@ TEST(FourWheelSteer, EncodersThatStartAnewMoveNothing) {
   robot.step({0.5, 0, 0});
   EXPECT_NEAR(robot.odometry().pose.pose.p.x, x + 0.005, 1e-9);
   // Stamps that stand or run backward are no step either.
+  const std::uint64_t count = robot.odometries();
   robot.tick -= 50;
   robot.step({0.5, 0, 0});
+  EXPECT_EQ(robot.odometries(), count);
   EXPECT_NEAR(robot.odometry().pose.pose.p.x, x + 0.005, 1e-9);
 }
 

@@ -178,7 +178,8 @@ void Governor::step(const Motion& command, std::span<const double> steering_rad,
     } else {
       drive(target, dt_s, setting);
     }
-  } else if (out.error_rad > limits_.steer_first_rad) {
+  } else if (out.error_rad >
+             (setting.phase == Phase::braking ? 0.5 * limits_.steer_first_rad : limits_.steer_first_rad)) {
     setting.phase = Phase::braking;
     brake(dt_s, setting);
   } else {

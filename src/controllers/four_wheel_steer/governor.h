@@ -12,10 +12,11 @@
 ///            the set point is, within the range of steering. The other one must be nearer by `hysteresis`, and a set
 ///            point at the end of its range stays there while the wanted angle is no farther than that beyond it, so that
 ///            a command along the end of the range does not make the wheels turn round and round.
-/// Transitions  steer before drive. While it drives, the speed of all wheels is scaled by cos(e), with e the largest error of
-///            steering, between set points and what is measured. When e exceeds `steer_first`, or a set point would have
-///            to jump that far, the motion is braked to a stop on its present centre; wheels are then steered at rest, all arriving at
-///            the same time, and it drives when e is at most `aligned`. From rest it does so, too.
+/// Transitions  steer before drive. While it drives, the speed of all wheels is scaled by cos(e), with e the largest error
+///            of steering, between set points and what is measured. When e exceeds `steer_first`, or a set point would
+///            have to jump that far, the motion is braked on its present centre, its set points of steering held, until e is at most half of it
+///            and no jump is left; mostly that is a stop. Wheels are steered at rest, all arriving at the same time,
+///            and it drives off when e is at most `aligned`. From rest it does so, too.
 /// Commands   that move no wheel by `smallest_speed` count as stop: steering stays where it is. Commands that no angle in the range of steering
 ///            fits count as stop and are reported as unreachable.
 /// Errors     none at run time; a command that is not finite counts as stop. @pre limits from a checked spec

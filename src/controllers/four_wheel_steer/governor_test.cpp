@@ -223,6 +223,27 @@ TEST(FourWheelGovernor, ACentreThatPassesAWheelDoesNotHoldItUp) {
   bench.run(on_it, 4);
   EXPECT_NEAR(bench.setting.motion.y, on_it.y, 1e-12);
   EXPECT_NEAR(bench.orders.rate_radps[0], 0, 1e-9);
+  // Off again, in a direction 0.2 rad from where that wheel points: its set point would jump by more than a step may.
+  const double before = bench.setting.steering_rad[0], angle = before + (before > 0 ? -0.2 : 0.2);
+  const Motion off{0.21 + 0.1 * math::cos(angle), -0.21 + 0.1 * math::sin(angle), 1};
+  bench.run(off, 4);
+  EXPECT_NEAR(bench.setting.motion.x, off.x, 1e-12);
+  EXPECT_NEAR(bench.setting.steering_rad[0], angle, 1e-9);
+}
+
+TEST(FourWheelGovernor, CommandsThatAreNoNumbersAreAStop) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const double smallest : {0.0, 0.005})
+    for (const Motion& bad :
+         {Motion{nan, 0, 0}, Motion{0, -inf, 0}, Motion{0.1, 0, nan}, Motion{inf, inf, inf}}) {
+      Bench bench({.smallest_speed_mps = smallest});
+      bench.run({0.5, 0, 0}, 1);
+      bench.run(bad, 1);
+      EXPECT_EQ(bench.setting.phase, Phase::standing);
+      EXPECT_EQ(bench.most_rate(), 0);
+      EXPECT_EQ(bench.orders.mode, Mode::stop);
+      EXPECT_TRUE(bench.governor.fits(bench.setting));
+    }
 }
 
 TEST(FourWheelGovernor, KeepsAllLimitsAndOneCentreWhateverIsCommanded) {
