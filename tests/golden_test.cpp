@@ -25,6 +25,7 @@ constexpr Golden goldens[] = {
     {"scenarios/primitives.yaml --duration 5s", "e64215f7e3264314"},
     {"scenarios/fig1_robot.yaml --duration 10s", "7d799912c67bc39a"},
     {"scenarios/mario.yaml --duration 10s", "60c13a6c05eacf9c"},
+    {"scenarios/mario_drive.yaml --duration 20s", "2b436c35e3e6b416"},
     {"scenarios/yard.yaml --duration 5s", "b8c9e71f041c6835"},
     {"scenarios/creatures.yaml --duration 3s", "76130b7e5a352906"},
     {"scenarios/wheels.yaml --duration 3s", "b4212f28bcb8e8dc"},
