@@ -83,8 +83,10 @@ struct Spec {
           s.limits.steer_first_rad);
     visit(Field{"aligned", "rad", "Error of steering at which it drives off.", 1e-4, 1.5, tunable},
           s.limits.aligned_rad);
-    visit(Field{"hysteresis", "rad", "Advantage for which a wheel changes its rolling direction.", 0, 0.5,
-                tunable},
+    visit(Field{"hysteresis", "rad",
+                "Angle by which the other rolling direction must be nearer, and by which a target may leave "
+                "the range.",
+                0, 0.5, tunable},
           s.limits.hysteresis_rad);
     visit(Field{"smallest_speed", "m/s", "Speed of the fastest wheel below which a command counts as stop.",
                 0, 10, tunable},
