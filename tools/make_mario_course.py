@@ -8,8 +8,8 @@ rate, as the paper's has. A hand moves two sticks from one position to the next 
 of the joystick has a dead zone, 127 steps each way, and 20 messages a second.
 
 The error in percent of an axis is about the lag times how much the command goes up and down per way: it depends on the course as much as on the
-robot. How long each axis is held was chosen so that the simulated robot's errors come near those of the paper's simulation, v_y held
-longest, turns shortest. So these three are no evidence; those of the robot with latency are.
+robot. How long each axis is held was chosen so that the errors come near those of the paper's Table 1, v_y held longest, turns shortest:
+docs/four_wheel_steer.md says what that leaves as evidence.
 """
 import math
 import pathlib
