@@ -7,6 +7,7 @@
   controller(clearing)                  \
   controller(diffusion)                 \
   controller(disturber)                 \
+  controller(estimate)                  \
   controller(footballer)                \
   controller(forager)                   \
   controller(formation)                 \
