@@ -5,7 +5,7 @@
 namespace sandlot::navigation {
 namespace {
 
-constexpr double least_drive_m = 0.01;
+constexpr double motion_least_drive_m = 0.01;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ MotionSampler::MotionSampler(MotionModel model, const MotionNoise& a, const Pose
     rot2_std_ = std::sqrt(a.alpha1 * turn * turn + a.alpha2 * trans2);
     return;
   }
-  const bool direction_known = trans_ >= least_drive_m;
+  const bool direction_known = trans_ >= motion_least_drive_m;
   if (std::abs(rot1_) > math::pi / 2) {
     rot1_ = math::wrap_angle(rot1_ + math::pi);
     trans_ = -trans_;

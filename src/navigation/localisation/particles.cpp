@@ -10,12 +10,12 @@
 namespace sandlot::navigation::amcl {
 namespace {
 
-constexpr double bin_m = 0.5;
-constexpr std::int32_t bins_per_turn = 36;
-constexpr double lightest = 1e-3;  ///< of a cluster's bins, as a part of the heaviest one
+constexpr double particle_bin_m = 0.5;
+constexpr std::int32_t particle_bins_per_turn = 36;
+constexpr double particle_lightest_bin = 1e-3;  ///< of a cluster's bins, as a part of the heaviest one
 
-std::int32_t bin_index(double x_m) {
-  return static_cast<std::int32_t>(std::clamp(std::floor(x_m / bin_m), -2e9, 2e9));
+std::int32_t particle_bin_index(double x_m) {
+  return static_cast<std::int32_t>(std::clamp(std::floor(x_m / particle_bin_m), -2e9, 2e9));
 }
 
 }  // namespace
@@ -69,9 +69,10 @@ std::uint32_t PoseBins::slot_of(std::int32_t x, std::int32_t y, std::int32_t tur
 }
 
 std::uint32_t PoseBins::add(const Pose2& pose, double weight) {
-  const std::int32_t x = bin_index(pose.x), y = bin_index(pose.y);
+  const std::int32_t x = particle_bin_index(pose.x), y = particle_bin_index(pose.y);
   const double part = math::wrap_angle(pose.theta) / math::tau + 0.5;  // [0, 1]
-  const std::int32_t turn = std::min(static_cast<std::int32_t>(part * bins_per_turn), bins_per_turn - 1);
+  const std::int32_t turn = std::min(static_cast<std::int32_t>(part * particle_bins_per_turn),
+                                     particle_bins_per_turn - 1);
   const std::uint32_t slot = slot_of(x, y, turn);
   if (slots_[slot] == 0) {
     SL_CHECK(bins_.size() < slots_.size() / 2);
@@ -89,7 +90,7 @@ PoseBins::Clusters PoseBins::find_clusters() {
     bin.cluster = none;
     heaviest = std::max(heaviest, bin.weight);
   }
-  const double least = lightest * heaviest;
+  const double least = particle_lightest_bin * heaviest;
   Clusters out;
   double best = -1;
   for (std::uint32_t first = 0; first < bins_.size(); ++first) {
@@ -105,7 +106,7 @@ PoseBins::Clusters PoseBins::find_clusters() {
       for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
           for (int dt = -1; dt <= 1; ++dt) {
-            const std::int32_t turn = (bin.turn + dt + bins_per_turn) % bins_per_turn;
+            const std::int32_t turn = (bin.turn + dt + particle_bins_per_turn) % particle_bins_per_turn;
             const std::uint32_t entry = slots_[slot_of(bin.x + dx, bin.y + dy, turn)];
             if (entry == 0 || bins_[entry - 1].cluster != none || bins_[entry - 1].weight < least) continue;
             bins_[entry - 1].cluster = cluster;

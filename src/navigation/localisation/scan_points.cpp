@@ -8,8 +8,8 @@
 namespace sandlot::navigation {
 namespace {
 
-constexpr int points_per_side = 20;
-constexpr double thickest_line = 0.05;
+constexpr int scan_points_per_side = 20;
+constexpr double scan_points_thickest_line = 0.05;
 
 bool scan_points_mount_usable(const Pose& X) {
   const double norm = X.q.w * X.q.w + X.q.x * X.q.x + X.q.y * X.q.y + X.q.z * X.q.z;
@@ -61,10 +61,10 @@ void add_normals(ScanPoints& points, double radius_m, double max_gap_m) {
   const auto square = [](Vec2 d) { return dot(d, d); };
   for (std::size_t i = 0; i < p.size(); ++i) {
     double n = 1, x = 0, y = 0, xx = 0, xy = 0, yy = 0;  // sums of the points relative to p[i]
-    int fewest = points_per_side;
+    int fewest = scan_points_per_side;
     for (const int side : {-1, 1}) {
       int count = 0;
-      for (std::size_t j = i; count < points_per_side; ++count) {
+      for (std::size_t j = i; count < scan_points_per_side; ++count) {
         if (side < 0 ? j == 0 : j + 1 == p.size()) break;
         const std::size_t next = side < 0 ? j - 1 : j + 1;
         const Vec2 d = p[next] - p[i];
@@ -79,7 +79,7 @@ void add_normals(ScanPoints& points, double radius_m, double max_gap_m) {
     xx -= x * x / n, xy -= x * y / n, yy -= y * y / n;
     // Eigenvalues of [xx xy; xy yy]: half +- root. The normal belongs to the smaller one.
     const double half = (xx + yy) / 2, root = std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy);
-    if (!(root > 0) || half - root > thickest_line * (half + root)) continue;
+    if (!(root > 0) || half - root > scan_points_thickest_line * (half + root)) continue;
     Vec2 along = xx > yy ? Vec2{(xx - yy) / 2 + root, xy} : Vec2{xy, (yy - xx) / 2 + root};
     along = (1 / std::sqrt(square(along))) * along;
     Vec2 normal{-along.y, along.x};
