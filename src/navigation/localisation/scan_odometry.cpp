@@ -190,7 +190,7 @@ Result<State> begin(const Spec& spec) {
   return State{};
 }
 
-Outcome update(const Spec& spec, State& state, const msg::LaserScan& scan, const Pose& X_BL,
+Outcome update(const Spec& spec, State& state, Workspace& work, const msg::LaserScan& scan, const Pose& X_BL,
                const Pose2* motion) {
   const Time stamp = scan.header.stamp;
   if (stamp < Time{} || stamp > laser_last_stamp) return laser_count(state, Outcome::bad_stamp);
@@ -199,7 +199,7 @@ Outcome update(const Spec& spec, State& state, const msg::LaserScan& scan, const
   const bool rewound = state.known && dt_s < -spec.longest_gap_s;
   if (state.known && dt_s <= 0 && !rewound) return laser_count(state, Outcome::late);
 
-  ScanPoints points;
+  ScanPoints& points = work.scan;
   const ScanFault fault = take_points(scan, X_BL, {spec.min_range_m, spec.max_range_m, spec.max_points},
                                       points);
   if (fault == ScanFault::bad_scan) return laser_count(state, Outcome::bad_scan);

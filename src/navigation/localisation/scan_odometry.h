@@ -147,10 +147,15 @@ struct State {
 /// Odometry before the first scan, or what is wrong with the spec.
 Result<State> begin(const Spec& spec);
 
+/// Memory of update(), whose content does not outlast a call.
+struct Workspace {
+  ScanPoints scan;
+};
+
 /// @param X_BL    mount of the laser
 /// @param motion  X_BB', the motion since the last scan that was matched, started or lost, by wheels or IMU; null:
 ///                the last one goes on
-Outcome update(const Spec& spec, State& state, const msg::LaserScan& scan, const Pose& X_BL,
+Outcome update(const Spec& spec, State& state, Workspace& work, const msg::LaserScan& scan, const Pose& X_BL,
                const Pose2* motion = nullptr);
 
 }  // namespace sandlot::navigation::laser

@@ -22,6 +22,12 @@ msg::LaserScan laser_scan(const Room& room, const Laser& laser, const Pose2& X, 
   return scan_at(room, laser, X, Time::from_s(t_s), random);
 }
 
+Outcome laser_update(const Spec& spec, State& state, const msg::LaserScan& scan, const Pose& X_BL,
+                     const Pose2* motion = nullptr) {
+  Workspace work;
+  return update(spec, state, work, scan, X_BL, motion);
+}
+
 TEST(LaserOdometry, OneStepByHand) {
   const Room room = furnished_room();
   Laser laser;
@@ -30,8 +36,9 @@ TEST(LaserOdometry, OneStepByHand) {
   const Spec spec;
   State state = *begin(spec);
   const Pose2 from{3.2, 2.6, 0.4}, step{0.12, 0.05, -0.1};
-  EXPECT_EQ(update(spec, state, laser_scan(room, laser, from, 1, random), laser.X_BL), Outcome::started);
-  EXPECT_EQ(update(spec, state, laser_scan(room, laser, compose(from, step), 1.1, random), laser.X_BL),
+  EXPECT_EQ(laser_update(spec, state, laser_scan(room, laser, from, 1, random), laser.X_BL),
+            Outcome::started);
+  EXPECT_EQ(laser_update(spec, state, laser_scan(room, laser, compose(from, step), 1.1, random), laser.X_BL),
             Outcome::matched);
   // Without noise what is left are pairs at corners.
   EXPECT_NEAR(state.pose.x, step.x, 2e-3);
@@ -56,8 +63,8 @@ TEST(LaserOdometry, DriftsLittleOnALoop) {
   double driven_m = 0;
   for (int k = 0; k < 100; ++k) {
     const Pose2 before = robot.X_MB;
-    const Outcome outcome = update(spec, state, laser_scan(room, laser, robot.X_MB, 1 + 0.1 * k, random),
-                                   laser.X_BL);
+    const Outcome outcome = laser_update(
+        spec, state, laser_scan(room, laser, robot.X_MB, 1 + 0.1 * k, random), laser.X_BL);
     ASSERT_EQ(outcome, k == 0 ? Outcome::started : Outcome::matched) << k;
     if (k == 99) break;
     robot.go(random);
@@ -78,9 +85,10 @@ TEST(LaserOdometry, ACorridorKeepsTheGuess) {
   const Spec spec;
   State state = *begin(spec);
   const Pose2 from{20, 0.9, 0.1}, to{20.2, 1.0, 0.05};
-  ASSERT_EQ(update(spec, state, laser_scan(corridor, laser, from, 1, random), laser.X_BL), Outcome::started);
+  ASSERT_EQ(laser_update(spec, state, laser_scan(corridor, laser, from, 1, random), laser.X_BL),
+            Outcome::started);
   const Pose2 wheels = compose(relative(from, to), {0.05, 0, 0});
-  ASSERT_EQ(update(spec, state, laser_scan(corridor, laser, to, 1.1, random), laser.X_BL, &wheels),
+  ASSERT_EQ(laser_update(spec, state, laser_scan(corridor, laser, to, 1.1, random), laser.X_BL, &wheels),
             Outcome::matched);
   EXPECT_EQ(state.observable, 2);
   const Pose2 X_MB = compose(from, state.pose);
@@ -95,9 +103,9 @@ TEST(LaserOdometry, ACorridorKeepsTheGuess) {
   EXPECT_LT(across.dot(P * across), 1e-3 * unknown_variance);
   EXPECT_LT(P(2, 2), 1e-3 * unknown_variance);
   // Without wheels the last motion goes on.
-  ASSERT_EQ(
-      update(spec, state, laser_scan(corridor, laser, compose(to, {0.2, 0, 0}), 1.2, random), laser.X_BL),
-      Outcome::matched);
+  ASSERT_EQ(laser_update(spec, state, laser_scan(corridor, laser, compose(to, {0.2, 0, 0}), 1.2, random),
+                         laser.X_BL),
+            Outcome::matched);
   EXPECT_NEAR(compose(from, state.pose).x, 20.25 + 0.25, 0.03);
 }
 
@@ -107,16 +115,17 @@ TEST(LaserOdometry, LostWhenNothingFits) {
   Stream random = laser_stream(3);
   const Spec spec;
   State state = *begin(spec);
-  update(spec, state, laser_scan(room, laser, {3.2, 2.6, 0.4}, 1, random), laser.X_BL);
+  laser_update(spec, state, laser_scan(room, laser, {3.2, 2.6, 0.4}, 1, random), laser.X_BL);
   const Pose2 wheels{0.1, 0, 0};
-  EXPECT_EQ(update(spec, state, laser_scan(small, laser, {1, 0.7, 0}, 1.1, random), laser.X_BL, &wheels),
-            Outcome::lost);
+  EXPECT_EQ(
+      laser_update(spec, state, laser_scan(small, laser, {1, 0.7, 0}, 1.1, random), laser.X_BL, &wheels),
+      Outcome::lost);
   EXPECT_NEAR(state.pose.x, 0.1, 1e-12);
   EXPECT_EQ(state.observable, 0);
   EXPECT_GE(state.covariance[0], unknown_variance);
   EXPECT_EQ(state.keys, 2u);
   // From there it goes on.
-  EXPECT_EQ(update(spec, state, laser_scan(small, laser, {1.05, 0.7, 0}, 1.2, random), laser.X_BL),
+  EXPECT_EQ(laser_update(spec, state, laser_scan(small, laser, {1.05, 0.7, 0}, 1.2, random), laser.X_BL),
             Outcome::matched);
   EXPECT_NEAR(state.pose.x, 0.15, 0.01);
   EXPECT_GE(state.covariance[0], unknown_variance) << "what was lost stays unknown";
@@ -129,14 +138,14 @@ TEST(LaserOdometry, BadInputIsAnswered) {
   const Spec spec;
   State state = *begin(spec);
   const Pose2 at{3.2, 2.6, 0.4};
-  ASSERT_EQ(update(spec, state, laser_scan(room, laser, at, 5, random), laser.X_BL), Outcome::started);
+  ASSERT_EQ(laser_update(spec, state, laser_scan(room, laser, at, 5, random), laser.X_BL), Outcome::started);
   const msg::LaserScan good = laser_scan(room, laser, at, 5.1, random);
   const auto answer = [&](auto&& change, const Pose2* motion = nullptr) {
     State copy = state;
     msg::LaserScan scan = good;
     Pose mount = laser.X_BL;
     change(scan, mount);
-    const Outcome outcome = update(spec, copy, scan, mount, motion);
+    const Outcome outcome = laser_update(spec, copy, scan, mount, motion);
     EXPECT_EQ(copy.count(outcome), state.count(outcome) + 1);
     if (outcome != Outcome::matched && outcome != Outcome::rewound) {
       EXPECT_EQ(copy.at, state.at);
@@ -194,8 +203,8 @@ TEST(LaserOdometry, GoesOnFromACopyToTheBit) {
       ASSERT_TRUE(reader.ok() && copy.fits(spec));
     }
     const msg::LaserScan scan = laser_scan(room, laser, robot.X_MB, 1 + 0.1 * k, random);
-    update(spec, state, scan, laser.X_BL);
-    if (k >= 6) update(spec, copy, scan, laser.X_BL);
+    laser_update(spec, state, scan, laser.X_BL);
+    if (k >= 6) laser_update(spec, copy, scan, laser.X_BL);
     robot.go(random);
   }
   ByteWriter a, b;
@@ -221,8 +230,8 @@ TEST(SlowLaserOdometry, CovarianceOfOneStepIsThatOfItsErrors) {
     const Pose2 from = placed(room, random),
                 step{random.uniform(-0.2, 0.2), random.uniform(-0.1, 0.1), random.uniform(-0.2, 0.2)};
     State state = *begin(spec);
-    update(spec, state, laser_scan(room, laser, from, 1, random), laser.X_BL);
-    if (update(spec, state, laser_scan(room, laser, compose(from, step), 1.1, random), laser.X_BL) !=
+    laser_update(spec, state, laser_scan(room, laser, from, 1, random), laser.X_BL);
+    if (laser_update(spec, state, laser_scan(room, laser, compose(from, step), 1.1, random), laser.X_BL) !=
             Outcome::matched ||
         state.observable < 3)
       continue;
@@ -252,8 +261,9 @@ TEST(SlowLaserOdometry, DriftIsBelowOnePercent) {
     double driven_m = 0;
     for (int k = 0; k < 400; ++k) {
       const Pose2 before = robot.X_MB;
-      ASSERT_NE(update(spec, state, laser_scan(room, laser, robot.X_MB, 1 + 0.1 * k, random), laser.X_BL),
-                Outcome::lost);
+      ASSERT_NE(
+          laser_update(spec, state, laser_scan(room, laser, robot.X_MB, 1 + 0.1 * k, random), laser.X_BL),
+          Outcome::lost);
       if (k == 399) break;
       robot.go(random);
       driven_m += distance(robot.X_MB, before);

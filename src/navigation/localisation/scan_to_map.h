@@ -17,8 +17,8 @@
 /// Limits    the covariance takes points as independent, and adds the error of the grid (resolution^2 / 12) once.
 ///           Where the map looks alike, search() gives one of the places: `score` says how well it fits, not that no
 ///           other does. Along a corridor the guess stays (`observable` < 3).
-/// Cost      refine(): about 0.1 us a point and step. search(): depends on the window; a metre and 30 degrees of a room a
-///           few milliseconds. Memory: 12 bytes a cell.
+/// Cost      refine(): about 0.1 us a point and step. search(): depends on the window; in a room a metre and 30 degrees
+///           take half a millisecond, 16 m and all turns 10 ms. Memory: up to 12 bytes a cell.
 /// Source    E. B. Olson, Real-time correlative scan matching (2009); W. Hess, D. Kohler, H. Rapp, D. Andor, Real-time
 ///           loop closure in 2D LIDAR SLAM (2016), sec. V-B. The projection onto the scan's normals is ours.
 #include "base/node.h"
