@@ -42,14 +42,14 @@ TEST(OdometryMotion, WithoutNoiseItIsTheStep) {
 // x = trans cos(a + e), with e ~ N(0, r1^2), trans ~ N(t, s^2) independent:
 //   E x = t cos(a) exp(-r1^2 / 2),   E x^2 = (t^2 + s^2) (1 + cos(2 a) exp(-2 r1^2)) / 2
 TEST(OdometryMotion, DifferentialMoments) {
-  const MotionNoise noise{0.1, 0.05, 0.02, 0.03, 0};
+  const MotionNoise noise{0.1, 0.05, 0.005, 0.3, 0};
   // An arc: bearing 0.3, chord 0.8, turn 0.6: rot1 = rot2 = 0.3.
   const double t = 0.8, rot1 = 0.3, rot2 = 0.3, heading = 0.5, a = heading + rot1;
   const auto [s, c] = math::sincos(rot1);
   const MotionMoments m = motion_moments(MotionModel::differential, noise, {t * c, t * s, rot1 + rot2},
                                          {4, -2, heading});
   const double r1 = 0.1 * rot1 * rot1 + 0.05 * t * t, r2 = 0.1 * rot2 * rot2 + 0.05 * t * t,
-               d = 0.02 * t * t + 0.03 * (rot1 * rot1 + rot2 * rot2);
+               d = 0.005 * t * t + 0.3 * (rot1 * rot1 + rot2 * rot2);
   const double shrink = math::exp(-r1 / 2);
   // Standard deviations of a mean of 20000: about 0.17 / 141 = 0.0012; five of them.
   EXPECT_NEAR(m.x, t * math::cos(a) * shrink, 0.006);

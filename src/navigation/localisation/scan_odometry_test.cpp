@@ -77,6 +77,24 @@ TEST(LaserOdometry, DriftsLittleOnALoop) {
   EXPECT_GT(state.keys, 5u);
 }
 
+// Past the end of a partition of 4 cm: one face in the key scan, the other one in the next.
+TEST(LaserOdometry, DoesNotTakeTheBackOfAWallForItsFront) {
+  const Room room{6, 4, {{{3, 0.6}, 0.02, 0.6, 0}}};
+  Laser laser;
+  laser.deviation_m = 0;
+  Stream random = laser_stream(9);
+  const Spec spec;
+  State state = *begin(spec);
+  const Pose2 from{2.7, 2.1, -math::pi / 2}, to{3.35, 2.1, -math::pi / 2};
+  const Pose2 step = relative(from, to);
+  ASSERT_EQ(laser_update(spec, state, laser_scan(room, laser, from, 1, random), laser.X_BL),
+            Outcome::started);
+  ASSERT_EQ(laser_update(spec, state, laser_scan(room, laser, to, 1.1, random), laser.X_BL, &step),
+            Outcome::matched);
+  EXPECT_NEAR(state.pose.x, step.x, 2e-3);
+  EXPECT_NEAR(state.pose.y, step.y, 2e-3);
+}
+
 TEST(LaserOdometry, ACorridorKeepsTheGuess) {
   const Room corridor{60, 2, {}};
   Laser laser;

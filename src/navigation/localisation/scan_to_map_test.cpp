@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/localisation/test_rooms.h"
@@ -74,43 +75,103 @@ TEST(ScanToMap, SearchFindsTheBestOffsetOfTheWindow) {
   spec.search_distance_m = 0.4;
   spec.search_angle_rad = 0.1;
   spec.search_points = 40;
+  spec.search_deviation_m = 0.04;  // a peak within a cell, which a wrong bound would miss
+  spec.min_score = 0.1;
   const GridMap map = room.map(0.1);
   const MapMatcher matcher = *MapMatcher::make(spec, map);
   // The reference tries all offsets one by one, with the score as it is defined.
   const DistanceField field = *DistanceField::make(map, 65, 5);
-  Stream random = map_match_stream(60);
   const Pose2 truth{3.3, 2.7, 0.8};
-  const msg::LaserScan scan = scan_at(room, laser, truth, {}, random);
-  const Pose2 guess = compose(truth, {0.2, -0.15, 0.06});
-  ScanPoints points;
-  ASSERT_EQ(take_points(scan, laser.X_BL, {0, 100, spec.max_points}, points), ScanFault::none);
-  std::vector<Vec2> chosen;
-  double farthest = 0.1;
-  for (std::size_t k = 0; k < 40; ++k) {
-    chosen.push_back(points.p_B[k * points.p_B.size() / 40]);
-    farthest = std::max(farthest, math::hypot(chosen.back().x, chosen.back().y));
-  }
-  const int turns = static_cast<int>(std::ceil(0.1 / (0.1 / farthest)));
-  double best = 0;
-  for (int t = -turns; t <= turns; ++t)
-    for (int dy = -4; dy <= 4; ++dy)
-      for (int dx = -4; dx <= 4; ++dx) {
-        double sum = 0;
-        for (const Vec2 p : chosen) {
-          const Pose2 end = compose({guess.x, guess.y, guess.theta + t * 0.1 / turns}, {p.x, p.y, 0});
-          const Vec2 g = field.frame().to_grid({end.x, end.y});
-          const Cell cell{static_cast<int>(std::floor(g.x)) + dx, static_cast<int>(std::floor(g.y)) + dy};
-          if (!field.geometry().contains(cell)) continue;
-          const auto d = static_cast<double>(field.at(cell));
-          sum += std::floor(255 * math::exp(-d * d / (2 * 0.01)) + 0.5);
-        }
-        best = std::max(best, sum / (255 * 40));
+  for (std::uint64_t round = 0; round < 6; ++round) {
+    Stream random = map_match_stream(60 + round);
+    const msg::LaserScan scan = scan_at(room, laser, truth, {}, random);
+    const Pose2 guess = compose(
+        truth, {random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.09, 0.09)});
+    ScanPoints points;
+    ASSERT_EQ(take_points(scan, laser.X_BL, {0, 100, spec.max_points}, points), ScanFault::none);
+    std::vector<Vec2> chosen;
+    double farthest = 0.1;
+    for (std::size_t k = 0; k < 40; ++k) {
+      chosen.push_back(points.p_B[k * points.p_B.size() / 40]);
+      farthest = std::max(farthest, math::hypot(chosen.back().x, chosen.back().y));
+    }
+    const int turns = static_cast<int>(std::ceil(0.1 / (0.1 / farthest)));
+    double best = 0;
+    for (int t = -turns; t <= turns; ++t) {
+      double sums[9][9] = {};
+      for (const Vec2 p : chosen) {
+        const Pose2 end = compose({guess.x, guess.y, guess.theta + t * 0.1 / turns}, {p.x, p.y, 0});
+        const Vec2 g = field.frame().to_grid({end.x, end.y});
+        for (int dy = -4; dy <= 4; ++dy)
+          for (int dx = -4; dx <= 4; ++dx) {
+            const Cell cell{static_cast<int>(std::floor(g.x)) + dx, static_cast<int>(std::floor(g.y)) + dy};
+            if (!field.geometry().contains(cell)) continue;
+            const auto d = static_cast<double>(field.at(cell));
+            sums[dy + 4][dx + 4] += std::floor(255 * math::exp(-d * d / (2 * 0.0016)) + 0.5);
+          }
       }
-  const MapMatch match = matcher.search(scan, laser.X_BL, guess);
-  ASSERT_EQ(match.outcome, MatchOutcome::matched);
-  EXPECT_NEAR(match.score, best, 1e-12);
-  EXPECT_LT(match.evaluations, 81 * (2 * turns + 1)) << "less than one by one";
-  EXPECT_LT(distance(match.pose, truth), 0.06);
+      for (const auto& row : sums) best = std::max(best, *std::max_element(row, row + 9) / (255 * 40));
+    }
+    const MapMatch match = matcher.search(scan, laser.X_BL, guess);
+    ASSERT_EQ(match.outcome, MatchOutcome::matched);
+    EXPECT_NEAR(match.score, best, 1e-12) << round;
+    EXPECT_LT(match.evaluations, 81 * (2 * turns + 1)) << "fewer than one by one";
+    EXPECT_LT(distance(match.pose, truth), 0.1);
+  }
+}
+
+// Poles of one cell, where a neighbouring offset scores nothing: a bound that misses one cell would miss the place.
+TEST(ScanToMap, SearchMissesNoOffset) {
+  Room field{10, 10, {}};
+  for (const Vec2 pole :
+       {Vec2{6.05, 5.55}, {3.25, 4.65}, {5.15, 7.85}, {4.75, 2.45}, {7.35, 6.95}, {2.85, 6.25}})
+    field.boxes.push_back({pole, 0.04, 0.04, 0});
+  Laser laser;
+  laser.beams = 721;
+  laser.first_rad = -math::pi, laser.span_rad = math::tau;
+  laser.range_max_m = 4;  // the walls are farther
+  laser.deviation_m = 0;
+  MapMatchSpec spec;
+  spec.search_distance_m = 0.4, spec.search_angle_rad = 0, spec.search_deviation_m = 0.01,
+  spec.min_score = 0.1;
+  const MapMatcher matcher = *MapMatcher::make(spec, field.map(0.1));
+  Stream random = map_match_stream(90);
+  const Pose2 truth{5.02, 4.97, 0};
+  const msg::LaserScan scan = scan_at(field, laser, truth, {}, random);
+  for (int dy = -4; dy <= 4; ++dy)
+    for (int dx = -4; dx <= 4; ++dx) {
+      const MapMatch match = matcher.search(scan, laser.X_BL, {truth.x - 0.1 * dx, truth.y - 0.1 * dy, 0});
+      EXPECT_NEAR(match.score, 1, 1e-12) << dx << " " << dy;
+    }
+}
+
+// Maps that were built from scans: walls of one cell, unknown behind.
+TEST(ScanToMap, RefinesWithThinWalls) {
+  const Room room = furnished_room();
+  const Laser laser;
+  GridMap map = room.map(0.05, 0.2);
+  const GridFrame frame(map.geometry);
+  for (int y = 0; y < map.geometry.height; ++y)
+    for (int x = 0; x < map.geometry.width; ++x)
+      if (std::int8_t& cell = map.occupancy[map.geometry.index({x, y})]; cell == 100) {
+        bool surface = false;
+        for (const Cell beside : {Cell{x - 1, y}, Cell{x + 1, y}, Cell{x, y - 1}, Cell{x, y + 1}}) {
+          const Vec2 p = frame.centre(beside);
+          surface = surface || room.clearance(p) > 0;
+        }
+        if (!surface) cell = GridMap::unknown;
+      }
+  const MapMatcher matcher = *MapMatcher::make({}, map);
+  for (std::uint64_t k = 0; k < 8; ++k) {
+    Stream random = map_match_stream(300 + k);
+    const Pose2 truth = placed(room, random);
+    const Pose2 guess = compose(
+        truth, {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.1, 0.1)});
+    const MapMatch match = matcher.refine(scan_at(room, laser, truth, {}, random), laser.X_BL, guess);
+    ASSERT_EQ(match.outcome, MatchOutcome::matched) << k;
+    EXPECT_LT(distance(match.pose, truth), 0.025 * std::numbers::sqrt2) << k;
+    EXPECT_LT(turn(match.pose, truth), 0.01) << k;
+  }
 }
 
 TEST(ScanToMap, SearchOverTheWholeMap) {
