@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math.h"
 #include "base/random.h"
 
 namespace sandlot::cameras {
@@ -25,7 +26,7 @@ class Texture {
   }
   std::uint8_t at(double u, double v) const {
     double sum = 0;
-    for (const Wave& w : waves_) sum += std::sin(w.u * u + w.v * v + w.phase);
+    for (const Wave& w : waves_) sum += math::sin(w.u * u + w.v * v + w.phase);
     return static_cast<std::uint8_t>(std::clamp(std::lround(128 + 9 * sum), 0L, 255L));
   }
 
