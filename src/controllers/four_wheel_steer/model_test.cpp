@@ -114,7 +114,7 @@ TEST(FourWheelOdometry, IsThatOfTheSingularValueDecomposition) {
     const Eigen::RowVector2d p = P.colwise().mean(), q = Q.colwise().mean();
     P.rowwise() -= p;
     Q.rowwise() -= q;
-    const Eigen::Matrix2d A = P.transpose() * Q;
+    const Eigen::Matrix2d A = P.transpose().lazyProduct(Q);
     const Eigen::JacobiSVD<Eigen::Matrix2d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix2d V = svd.matrixU(), W = svd.matrixV();
     const double d = (W * V.transpose()).determinant() > 0 ? 1 : -1;
@@ -129,7 +129,7 @@ TEST(FourWheelOdometry, IsThatOfTheSingularValueDecomposition) {
     const Eigen::Vector2d t = q.transpose() - R * p.transpose();
     EXPECT_NEAR(fit.x_m, t.x(), 1e-9);
     EXPECT_NEAR(fit.y_m, t.y(), 1e-9);
-    const double squares = (Q - P * R.transpose()).squaredNorm() / static_cast<double>(n);
+    const double squares = (Q - P.lazyProduct(R.transpose())).squaredNorm() / static_cast<double>(n);
     EXPECT_NEAR(fit.rmsd_m, std::sqrt(squares), 1e-9);
   }
 }
