@@ -1,0 +1,143 @@
+// Poses and covariances of a track, predicted by hand.
+#include "navigation/visual_odometry/track.h"
+
+#include <gtest/gtest.h>
+
+#include "base/math.h"
+#include "navigation/visual_odometry/rigid.h"
+#include "navigation/visual_odometry/test_drive.h"
+
+namespace sandlot::navigation::vo {
+namespace {
+
+Covariance diagonal(std::array<double, 6> variances) {
+  Covariance out{};
+  for (std::size_t i = 0; i < 6; ++i) out[7 * i] = variances[i];
+  return out;
+}
+
+// B's heading has the variance 0.01; C lies 2 m ahead and looks to the left: C's x axis is B's y axis. A turn by a moves C by 2 a
+// along it: variance 4 * 0.01, covariance with the heading 2 * 0.01.
+TEST(VoTrack, LeverTurnsErrorsOfHeadingIntoErrorsOfPosition) {
+  const Pose X_BC{{2, 0, 0}, quat_from_rpy(0, 0, math::pi / 2)};
+  const Covariance C = composed(diagonal({0, 0, 0, 0, 0, 0.01}), X_BC, diagonal({0.1, 0.2, 0.3, 0, 0, 0}));
+  Covariance expected = diagonal({0.1 + 0.04, 0.2, 0.3, 0, 0, 0.01});
+  expected[5] = expected[30] = 0.02;
+  for (std::size_t i = 0; i < 36; ++i) EXPECT_NEAR(C[i], expected[i], 1e-15) << i;
+  // Roll of B at 2 m above: C moves along -y of B, that is -x of C.
+  const Pose above{{0, 0, 2}, quat_from_rpy(0, 0, math::pi / 2)};
+  const Covariance D = composed(diagonal({0, 0, 0, 0.01, 0, 0}), above, {});
+  EXPECT_NEAR(D[0], 0.04, 1e-15);
+  // B's x axis is C's -y axis: a turn of a about it is one of -a about C's y, and moves C's origin by -2 a along C's x.
+  EXPECT_NEAR(D[4], 0.02, 1e-15);
+  EXPECT_NEAR(D[28], 0.01, 1e-15);
+}
+
+// Pitch of B by a, 2 m below C: C moves by 2 a along B's x, which is C's -y; B's y is C's x.
+TEST(VoTrack, LeverOfPitch) {
+  const Pose above{{0, 0, 2}, quat_from_rpy(0, 0, math::pi / 2)};
+  const Covariance C = composed(diagonal({0, 0, 0, 0, 0.01, 0}), above, {});
+  EXPECT_NEAR(C[7], 0.04, 1e-15);
+  EXPECT_NEAR(C[9], -0.02, 1e-15);
+  EXPECT_NEAR(C[21], 0.01, 1e-15);
+}
+
+// Two keyframes and an image: poses multiply, errors of both add in W's axes.
+TEST(VoTrack, PosesAndErrorsAccumulate) {
+  Track track;
+  Step step;
+  const Pose ahead{{1, 0, 0}, quat_from_rpy(0, 0, math::pi / 2)};
+  const Covariance errors = diagonal({1e-4, 4e-4, 9e-4, 0, 0, 0});
+  enter_pose(track, ahead, errors, step);
+  EXPECT_EQ(step.motion.p, ahead.p);
+  EXPECT_EQ(step.motion_errors, errors);
+  enter_keyframe(track, step);
+  EXPECT_TRUE(step.keyframe);
+  EXPECT_EQ(track.X_KS, Pose{});
+  Step next;
+  enter_pose(track, ahead, errors, next);
+  const Pose X_WS = pose_W(track);
+  EXPECT_NEAR(norm(X_WS.p - Vec3{1, 1, 0}), 0, 1e-12);
+  EXPECT_NEAR(test::angle_between(X_WS.q, quat_from_rpy(0, 0, math::pi)), 0, 1e-7);
+  // S's axes at the first keyframe: x is W's y. At the second one x is W's -x.
+  const Covariance P = covariance_W(track);
+  EXPECT_NEAR(P[0], 4e-4 + 1e-4, 1e-12);
+  EXPECT_NEAR(P[7], 1e-4 + 4e-4, 1e-12);
+  EXPECT_NEAR(P[14], 18e-4, 1e-12);
+  // From the same keyframe again: the motion is the difference, its errors those of both images.
+  Step last;
+  enter_pose(track, {{1, 0.5, 0}, ahead.q}, errors, last);
+  EXPECT_NEAR(norm(last.motion.p - Vec3{0.5, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(last.motion_errors[0], 2e-4, 1e-12);
+  EXPECT_NEAR(last.motion_errors[7], 8e-4, 1e-12);
+}
+
+TEST(VoTrack, GapsLeaveThePoseUnknown) {
+  Track track;
+  Step step;
+  enter_pose(track, {{1, 2, 0}, {}}, diagonal({1, 1, 1, 1, 1, 1}), step);
+  enter_gap(track, step);
+  EXPECT_EQ(pose_W(track).p, (Vec3{1, 2, 0}));
+  EXPECT_EQ(step.motion, Pose{});
+  EXPECT_EQ(track.gaps, 1u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_GE(covariance_W(track)[7 * i], unknown_variance);
+    EXPECT_EQ(step.motion_errors[7 * i], unknown_variance);
+  }
+}
+
+// S ahead by 1 m along x, which is the optical z: points come nearer by 1 m. S to the left by 1 m: points go to the right, along
+// the optical x. Yaw to the left by a: points turn about the optical y (down) by +a, from z to x.
+TEST(VoTrack, OpticalFrames) {
+  EXPECT_NEAR((optical_motion({{1, 0, 0}, {}}).t - Eigen::Vector3d(0, 0, -1)).norm(), 0, 1e-15);
+  EXPECT_NEAR((optical_motion({{0, 1, 0}, {}}).t - Eigen::Vector3d(1, 0, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((optical_motion({{0, 0, 1}, {}}).t - Eigen::Vector3d(0, 1, 0)).norm(), 0, 1e-15);
+  const Rigid turned = optical_motion({{}, quat_from_rpy(0, 0, 0.3)});
+  EXPECT_NEAR(
+      (turned.R * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(math::sin(0.3), 0, math::cos(0.3))).norm(), 0,
+      1e-15);
+  const Pose X{{0.3, -0.2, 0.1}, quat_from_rpy(0.1, -0.2, 0.3)};
+  const Pose back = motion_of_S(optical_motion(X));
+  EXPECT_NEAR(norm(back.p - X.p), 0, 1e-15);
+  EXPECT_NEAR(test::angle_between(back.q, X.q), 0, 1e-7);
+  // A small move of the points: by -0.01 along z is S ahead, a turn by 0.02 about the optical y is S turned to the left.
+  Rigid moved;
+  moved.move({0, 0, -0.01}, {0, 0.02, 0});
+  EXPECT_NEAR(motion_of_S(moved).p.x, 0.01 * math::cos(0.02), 1e-6);
+  EXPECT_NEAR(yaw_of(motion_of_S(moved).q), 0.02, 1e-5);
+  // Variances move with their axes: optical x y z are -y -z x of S.
+  Eigen::Matrix<double, 6, 6> optical = Eigen::Matrix<double, 6, 6>::Zero();
+  optical.diagonal() << 1, 2, 3, 4, 5, 6;
+  const Covariance S = errors_of_S(optical);
+  for (const auto& [at, value] :
+       {std::pair(0, 3), std::pair(1, 1), std::pair(2, 2), std::pair(3, 6), std::pair(4, 4), std::pair(5, 5)})
+    EXPECT_NEAR(S[static_cast<std::size_t>(7 * at)], value, 1e-12);
+}
+
+// Samples of different indices, all of them drawn in time; the number of samples is ln 0.0001 / ln(1 - share^3).
+TEST(VoTrack, Sampling) {
+  Stream random(1, 2, Purpose::experiment, 3);
+  std::array<int, 5> drawn{};
+  for (int i = 0; i < 200; ++i) {
+    std::array<std::uint32_t, 3> index{};
+    draw_distinct(random, 5, index);
+    EXPECT_TRUE(index[0] != index[1] && index[1] != index[2] && index[0] != index[2]);
+    for (const std::uint32_t k : index) ++drawn[k];
+  }
+  for (const int count : drawn) EXPECT_NEAR(count, 120, 35);  // 5 sqrt(200 * 0.6 * 0.4)
+  const auto samples = [](double share) {
+    RansacEnd end(3, 20, 1000);
+    int count = 0;
+    while (end.another())
+      if (++count == 5) end.found(share);
+    return count;
+  };
+  EXPECT_EQ(samples(1), 20);
+  EXPECT_EQ(samples(0.5), 69);  // 9.21 / 0.1335 = 68.97
+  EXPECT_EQ(samples(0.01), 1000);
+  std::vector<double> values{5, 1, 4, 2};
+  EXPECT_EQ(median(values), 4);
+}
+
+}  // namespace
+}  // namespace sandlot::navigation::vo
