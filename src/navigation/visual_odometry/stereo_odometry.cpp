@@ -8,6 +8,7 @@
 #include "base/math.h"
 #include "navigation/maps/grid.h"
 #include "navigation/visual_odometry/rigid.h"
+#include "navigation/visual_odometry/sampling.h"
 
 namespace sandlot::navigation::vo {
 namespace {

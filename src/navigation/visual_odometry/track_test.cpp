@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/math.h"
-#include "navigation/visual_odometry/rigid.h"
+#include "navigation/visual_odometry/sampling.h"
 #include "navigation/visual_odometry/test_drive.h"
 
 namespace sandlot::navigation::vo {
@@ -84,34 +84,6 @@ TEST(VoTrack, GapsLeaveThePoseUnknown) {
     EXPECT_GE(covariance_W(track)[7 * i], unknown_variance);
     EXPECT_EQ(step.motion_errors[7 * i], unknown_variance);
   }
-}
-
-// S ahead by 1 m along x, which is the optical z: points come nearer by 1 m. S to the left by 1 m: points go to the right, along
-// the optical x. Yaw to the left by a: points turn about the optical y (down) by +a, from z to x.
-TEST(VoTrack, OpticalFrames) {
-  EXPECT_NEAR((optical_motion({{1, 0, 0}, {}}).t - Eigen::Vector3d(0, 0, -1)).norm(), 0, 1e-15);
-  EXPECT_NEAR((optical_motion({{0, 1, 0}, {}}).t - Eigen::Vector3d(1, 0, 0)).norm(), 0, 1e-15);
-  EXPECT_NEAR((optical_motion({{0, 0, 1}, {}}).t - Eigen::Vector3d(0, 1, 0)).norm(), 0, 1e-15);
-  const Rigid turned = optical_motion({{}, quat_from_rpy(0, 0, 0.3)});
-  EXPECT_NEAR(
-      (turned.R * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(math::sin(0.3), 0, math::cos(0.3))).norm(), 0,
-      1e-15);
-  const Pose X{{0.3, -0.2, 0.1}, quat_from_rpy(0.1, -0.2, 0.3)};
-  const Pose back = motion_of_S(optical_motion(X));
-  EXPECT_NEAR(norm(back.p - X.p), 0, 1e-15);
-  EXPECT_NEAR(test::angle_between(back.q, X.q), 0, 1e-7);
-  // A small move of the points: by -0.01 along z is S ahead, a turn by 0.02 about the optical y is S turned to the left.
-  Rigid moved;
-  moved.move({0, 0, -0.01}, {0, 0.02, 0});
-  EXPECT_NEAR(motion_of_S(moved).p.x, 0.01 * math::cos(0.02), 1e-6);
-  EXPECT_NEAR(yaw_of(motion_of_S(moved).q), 0.02, 1e-5);
-  // Variances move with their axes: optical x y z are -y -z x of S.
-  Eigen::Matrix<double, 6, 6> optical = Eigen::Matrix<double, 6, 6>::Zero();
-  optical.diagonal() << 1, 2, 3, 4, 5, 6;
-  const Covariance S = errors_of_S(optical);
-  for (const auto& [at, value] :
-       {std::pair(0, 3), std::pair(1, 1), std::pair(2, 2), std::pair(3, 6), std::pair(4, 4), std::pair(5, 5)})
-    EXPECT_NEAR(S[static_cast<std::size_t>(7 * at)], value, 1e-12);
 }
 
 // Samples of different indices, all of them drawn in time; the number of samples is ln 0.0001 / ln(1 - share^3).
