@@ -23,7 +23,7 @@
 ///            in a new keyframe while the camera turns are lost. A scene of one plane has two solutions; the one with level
 ///            ground is not searched for, but the other has no ground in most cases.
 /// Random     base/random.h, by (seed, number of the image).
-/// Cost       10 ms for 640 x 480 pixels.
+/// Cost       16 ms for 640 x 480 pixels.
 /// Source     essential matrix by five points: D. Nister, An efficient solution to the five-point relative pose problem (2004);
 ///            by steps in place of its polynomial: T. Botterill et al., Fast RANSAC hypothesis generation for essential matrix
 ///            estimation (2011). Scale: as in libviso2, A. Geiger et al. (2011); votes by relative height are ours.
