@@ -21,6 +21,7 @@
   controller(sequence)                  \
   controller(sine)                      \
   controller(soccer_player)             \
+  controller(visual_odometry)           \
   controller(wander)                    \
   controller(waypoints)
 // clang-format on
