@@ -36,7 +36,7 @@ constexpr Golden goldens[] = {
     {"scenarios/gripping.yaml --set physics=planar", "540699f015cce607"},
     {"scenarios/msl_field.yaml --duration 300ms --set level=image", "936ab96475935637"},
     {"scenarios/msl_field.yaml --duration 2s --set level=objects", "9667b6fbaa99a87e"},
-    {"scenarios/stereo.yaml --duration 300ms", "90f7c59feb79f84e"},
+    {"scenarios/stereo.yaml --duration 300ms", "b2f8f1076e57f6f3"},
     {"scenarios/motor_ramp.yaml", "2957344ac78e6184"},
     {"scenarios/joint_step.yaml", "0a74600422c86148"},
     {"scenarios/errors.yaml --duration 10s", "ea1544123e181786"},

@@ -20,7 +20,7 @@ struct DisparityImage {
     visit(Field{"image", "1", "Disparities [pixels] as 32FC1; below min_disparity: none was found."},
           s.image);
     visit(Field{"f", "1", "Focal length [pixels]."}, s.f);
-    visit(Field{"t", "m", "Baseline."}, s.t);
+    visit(Field{"t", "m", "Distance between both eyes."}, s.t);
     visit(Field{"valid_window", "", "Part of the image in which there may be disparities."}, s.valid_window);
     visit(Field{"min_disparity", "1", "Smallest disparity that is looked for [pixels]."}, s.min_disparity);
     visit(Field{"max_disparity", "1", "Largest disparity that is looked for [pixels]."}, s.max_disparity);
