@@ -104,33 +104,6 @@ TEST(SlowHalfTimes, EveryBallIsRestartedInRuleTimeAndNothingIsNotANumber) {
   std::printf("%d half-times: %d goals, %d set pieces\n", count, goals, breaks);
 }
 
-/// teams/mixed: robots 1 to 4 stand on four kinds of chassis, and one software drives all of them.
-TEST(Match, ATeamMayHaveRobotsOfSeveralKinds) {
-  for (const std::string drive : {"ideal", "contact", "roller"}) {
-    const TestFolder scratch;
-    const std::string log = scratch.file("way.csv");
-    const Printed run = sandlot(
-        "run scenarios/match.yaml --headless --duration 12s --set cyan=../teams/mixed --set drive=" + drive +
-        " --log " + log +
-        " --log-values 'cyan2.pose.x,cyan2.pose.y,cyan3.pose.x,cyan3.pose.y,cyan4.pose.x,cyan4.pose.y'");
-    ASSERT_EQ(run.exit_code, 0) << run.out;
-    std::ifstream rows(log);
-    std::string row;
-    std::getline(rows, row);
-    std::array<double, 7> first{}, last{};
-    for (bool begun = false; std::getline(rows, row); begun = true) {
-      std::istringstream cells(row);
-      for (double& value : last) cells >> value, cells.ignore();
-      if (!begun) first = last;
-    }
-    for (std::size_t robot = 0; robot < 3; ++robot) {
-      const double x = last[1 + 2 * robot] - first[1 + 2 * robot],
-                   y = last[2 + 2 * robot] - first[2 + 2 * robot];
-      EXPECT_GT(std::hypot(x, y), 0.2) << "cyan" << robot + 2 << " at drive=" << drive << " has not moved";
-    }
-  }
-}
-
 TEST(Match, IsTheSameForAnyNumberOfThreads) {
   const std::string match = "scenarios/match.yaml --duration 14s --threads ";
   const auto one = summary_of(match + "1");

@@ -102,7 +102,7 @@ struct Robot {
     truth.turn_rad += a;
   }
   void run(const Motion& command, double time_s) {
-    for (int k = 0; k < static_cast<int>(time_s / tick_s + 0.5); ++k) step(command);
+    for (long k = 0; k < std::lround(time_s / tick_s); ++k) step(command);
   }
 };
 

@@ -35,7 +35,7 @@ struct Bench {
     measured[0] += error_rad;
   }
   void run(const Motion& command, double time_s) {
-    for (int k = 0; k < static_cast<int>(time_s / dt + 0.5); ++k) step(command);
+    for (long k = 0; k < std::lround(time_s / dt); ++k) step(command);
   }
   double most_rate() const {
     double most = 0;

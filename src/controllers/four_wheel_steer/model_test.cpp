@@ -116,7 +116,7 @@ TEST(FourWheelOdometry, IsThatOfTheSingularValueDecomposition) {
     Q.rowwise() -= q;
     const Eigen::Matrix2d A = P.transpose().lazyProduct(Q);
     const Eigen::JacobiSVD<Eigen::Matrix2d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix2d V = svd.matrixU(), W = svd.matrixV();
+    const Eigen::Matrix2d &V = svd.matrixU(), &W = svd.matrixV();
     const double d = (W * V.transpose()).determinant() > 0 ? 1 : -1;
     const Eigen::Matrix2d R = W * Eigen::Vector2d(1, d).asDiagonal() * V.transpose();
     const Fit fit = kabsch(before, after);

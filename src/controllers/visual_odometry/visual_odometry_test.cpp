@@ -9,7 +9,6 @@ namespace sandlot::controllers::visual_odometry {
 namespace {
 
 using namespace navigation::vo::test;
-namespace vo = navigation::vo;
 
 void put(msg::Image& image, const Picture& picture, const char* encoding) {
   const std::uint32_t channels = std::string_view(encoding) == "mono8" ? 1 : 3;

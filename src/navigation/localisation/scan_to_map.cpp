@@ -67,7 +67,7 @@ MapMatcher::Level MapMatcher::first_level(const DistanceField& field, double dev
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {
       const double d = static_cast<double>(field.at({x, y})) / deviation_m;
-      out.score[g.index({x, y})] = static_cast<std::uint8_t>(255 * math::exp(-d * d / 2) + 0.5);
+      out.score[g.index({x, y})] = static_cast<std::uint8_t>(std::floor(255 * math::exp(-d * d / 2) + 0.5));
     }
   return out;
 }

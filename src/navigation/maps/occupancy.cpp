@@ -163,7 +163,7 @@ GridMap OccupancyMapper::map() const {
   for (std::size_t i = 0; i < out.occupancy.size(); ++i)
     if (state_.seen[i])
       out.occupancy[i] = static_cast<std::int8_t>(
-          100 / (1 + math::exp(-static_cast<double>(state_.log_odds[i]))) + 0.5);
+          std::lround(100 / (1 + math::exp(-static_cast<double>(state_.log_odds[i])))));
   return out;
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <map>
 
 #include "base/math.h"
@@ -112,7 +114,8 @@ Picture field(int width, int height, Vec2 shift) {
   Picture out(width, height);
   for (int v = 0; v < height; ++v)
     for (int u = 0; u < width; ++u)
-      out.at(u, v) = static_cast<std::uint8_t>(texture.at(0.5 * (u - shift.x), 0.5 * (v - shift.y), 1) + 0.5);
+      out.at(u, v) = static_cast<std::uint8_t>(
+          std::floor(texture.at(0.5 * (u - shift.x), 0.5 * (v - shift.y), 1) + 0.5));
   return out;
 }
 

@@ -64,8 +64,8 @@ std::optional<Vec2> Patch::find(const PaddedImage& image, Vec2 start, double rea
     if (!(floor_u >= r && floor_v >= r && floor_u <= image.width - r - 2 && floor_v <= image.height - r - 2))
       return std::nullopt;
     const int u = static_cast<int>(floor_u) - r, v = static_cast<int>(floor_v) - r;
-    const int right = static_cast<int>((at.x - floor_u) * patch_fraction + 0.5),
-              lower = static_cast<int>((at.y - floor_v) * patch_fraction + 0.5);
+    const int right = static_cast<int>(std::floor((at.x - floor_u) * patch_fraction + 0.5)),
+              lower = static_cast<int>(std::floor((at.y - floor_v) * patch_fraction + 0.5));
     at = {floor_u + static_cast<double>(right) / patch_fraction,
           floor_v + static_cast<double>(lower) / patch_fraction};
     const std::int32_t w00 = (patch_fraction - right) * (patch_fraction - lower),

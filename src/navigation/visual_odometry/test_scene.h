@@ -147,7 +147,7 @@ struct Scene {
         // A pixel is t / focal wide, and longer by 1 / slope along the slant: the geometric mean.
         const double size = texels_per_m * t / (focal * std::sqrt(std::max(slope, 0.05)));
         out.at(u, v) = static_cast<std::uint8_t>(
-            brightness * texture.at(texels_per_m * s0, texels_per_m * s1, size) + 0.5);
+            std::floor(brightness * texture.at(texels_per_m * s0, texels_per_m * s1, size) + 0.5));
       }
     return out;
   }
