@@ -1,8 +1,9 @@
 /// Teams that bring their robots: `software: FOLDER` of a team adds the robots of FOLDER/team.yaml to the scenario.
 ///
-/// A robot is what the scenario says of the team's robots (key `robot`) with what team.yaml says of it upon that; then variables are
-/// replaced: those of the scenario, of team.yaml and of the team, and `number`, `team` and `start`. What it says keeps its place, so that
-/// errors name team.yaml, and programs start in the team's folder.
+/// A robot is what the scenario gives for the team's robots (key `robot`) with the keys of team.yaml laid over it, both after their variables
+/// are replaced: those of the scenario, of team.yaml and of the team, and `number`, `team` and `start`. So one device of team.yaml changes
+/// that device only, also where the scenario gives all devices by one variable. Keys of team.yaml keep their place, so that errors name
+/// team.yaml, and programs start in the team's folder.
 #include <algorithm>
 
 #include "base/read.h"
@@ -90,8 +91,6 @@ class TeamRobots {
   Status add_robot(int number, const Read& software, const Node& mine, std::vector<std::string>& used) {
     const auto index = static_cast<std::size_t>(number - 1);
     const Place& place = mine.place();
-    Node robot = keys_.robot.is_map() ? keys_.robot : Node::map(place);
-    merge(robot, mine);
     Node vars = Node::map(place);
     if (outer_.is_map()) merge(vars, outer_);
     if (software.keys.vars.is_map()) merge(vars, software.keys.vars);
@@ -101,7 +100,8 @@ class TeamRobots {
     if (index < keys_.starts.items().size()) vars.set("start", keys_.starts.items()[index]);
     Node holder = Node::map(place);
     holder.set("vars", std::move(vars));
-    holder.set("robot", std::move(robot));
+    holder.set("robot", keys_.robot.is_map() ? keys_.robot : Node::map(place));
+    holder.set("mine", mine);
     std::vector<std::pair<std::string, Place>> unused;
     SL_TRY(substitute_variables(holder, unused));
     for (const Node::Entry& entry : outer_.entries())
@@ -110,6 +110,7 @@ class TeamRobots {
         used.push_back(entry.key);
 
     Node whole = std::move(*holder.find("robot"));
+    merge(whole, *holder.find("mine"));
     whole.set_place(place);
     whole.set("name", Node::scalar(keys_.name + std::to_string(number), place));
     whole.set("team", Node::scalar(keys_.name, place));

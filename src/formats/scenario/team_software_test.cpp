@@ -94,6 +94,25 @@ TEST_F(TeamSoftwareFile, ChoosesByItsOwnVariables) {
   EXPECT_EQ(fast->robots[1].devices.find("drive")->find("level")->text(), "contact");
 }
 
+/// One device of team.yaml leaves the others as they are, although the scenario gives all of them by one variable.
+TEST_F(TeamSoftwareFile, ChangesOneOfTheDevicesThatAVariableGives) {
+  file = folder.write("s.yaml", R"(version: 1
+vars: {all: {drive: {level: ideal}, eye: {kind: camera}}}
+teams:
+  - {name: red, software: foxes, players: 2, starts: [[0, 0, 0], [1, 0, 0]], robot: {model: rover, devices: "$${all}"}}
+)");
+  write("version: 1\nname: A\nrobots: [{controller: wander}, {devices: {drive: {level: contact}}}]\n");
+  const auto team = read();
+  ASSERT_TRUE(team) << team.error().text();
+  ASSERT_EQ(team->robots.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    const Node& devices = team->robots[i].devices;
+    ASSERT_TRUE(devices.find("eye")) << team->robots[i].name;
+    EXPECT_EQ(devices.find("eye")->find("kind")->text(), "camera");
+    EXPECT_EQ(devices.find("drive")->find("level")->text(), i == 0 ? "ideal" : "contact");
+  }
+}
+
 TEST_F(TeamSoftwareFile, MayBringFewerRobots) {
   write("version: 1\nname: Two\nplayers: 2\nrobots: [{controller: wander}]\n");
   const auto two = read();
