@@ -104,6 +104,35 @@ TEST(SlowHalfTimes, EveryBallIsRestartedInRuleTimeAndNothingIsNotANumber) {
   std::printf("%d half-times: %d goals, %d set pieces\n", count, goals, breaks);
 }
 
+/// teams/mixed: robots 2 to 4 stand on other chassis than the scenario's, and one software drives all of them. A robot that hears no referee
+/// and sees no ball stands, or turns on its spot; one that plays goes several metres to the kick-off and after it.
+TEST(Match, ATeamMayHaveRobotsOfSeveralKinds) {
+  for (const std::string drive : {"ideal", "contact", "roller"}) {
+    const TestFolder scratch;
+    const std::string log = scratch.file("way.csv");
+    const Printed run = sandlot(
+        "run scenarios/match.yaml --headless --duration 10s --set cyan=../teams/mixed --set drive=" + drive +
+        " --log " + log +
+        " --log-values 'cyan2.pose.x,cyan2.pose.y,cyan3.pose.x,cyan3.pose.y,cyan4.pose.x,cyan4.pose.y'");
+    ASSERT_EQ(run.exit_code, 0) << run.out;
+    std::ifstream rows(log);
+    std::string row;
+    std::getline(rows, row);
+    std::array<double, 7> before{}, now{};
+    std::array<double, 3> way_m{};
+    for (bool begun = false; std::getline(rows, row); begun = true) {
+      before = now;
+      std::istringstream cells(row);
+      for (double& value : now) cells >> value, cells.ignore();
+      for (std::size_t robot = 0; begun && robot < way_m.size(); ++robot)
+        way_m[robot] += std::hypot(now[1 + 2 * robot] - before[1 + 2 * robot],
+                                   now[2 + 2 * robot] - before[2 + 2 * robot]);
+    }
+    for (std::size_t robot = 0; robot < way_m.size(); ++robot)
+      EXPECT_GT(way_m[robot], 1.5) << "cyan" << robot + 2 << " at drive=" << drive << " stands still";
+  }
+}
+
 TEST(Match, IsTheSameForAnyNumberOfThreads) {
   const std::string match = "scenarios/match.yaml --duration 14s --threads ";
   const auto one = summary_of(match + "1");
