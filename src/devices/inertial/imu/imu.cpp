@@ -10,7 +10,7 @@ namespace sandlot::imu {
 namespace {
 
 enum Level : std::uint32_t { imu_level, pose_level };
-constexpr std::uint64_t pose_use = 1;  // of the device's stream
+constexpr std::uint64_t pose_use = 1, orientation_use = 2;  // of the device's stream
 
 struct Motion {
   Vec3 v_W;  ///< of S's origin
@@ -28,6 +28,12 @@ Vec3 rotation_vector(Quat q) {
   const Vec3 v{q.x, q.y, q.z};
   const double s = norm(v);
   return s > 1e-12 ? v * (2 * math::atan2(s, q.w) / s) : v * 2.0;
+}
+
+/// The inverse of rotation_vector().
+Quat turn_by(Vec3 v) {
+  const double angle = norm(v);
+  return angle > 0 ? quat_from_axis_angle(v / angle, angle) : Quat{};
 }
 
 /// Adds the sub-step that ends now.
@@ -183,6 +189,7 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
   Stream random(build.seed, build.key, Purpose::initial, 0);
   imu.state.gyro.reset(spec.gyro, random, "gyro");
   imu.state.accel.reset(spec.accel, random, "accel");
+  imu.state.orientation.reset(spec.orientation, random, "orientation");
   imu.base = build.bodies.front().index;
   imu.message = build.publish<msg::Imu>(imu_level, "imu");
   imu.pose = build.publish<msg::PoseWithCovarianceStamped>(pose_level, "pose");
@@ -192,6 +199,7 @@ Result<Imu> Imu::create(const DeviceBuild& build, Spec spec) {
   const double interval_s = spec.rate_hz > 0 ? 1 / spec.rate_hz : build.tick.s();
   message.angular_velocity_covariance = covariance(spec.gyro, interval_s, spec.errors);
   message.linear_acceleration_covariance = covariance(spec.accel, interval_s, spec.errors);
+  message.orientation_covariance = covariance(spec.orientation, interval_s, spec.errors);
   return imu;
 }
 
@@ -229,7 +237,9 @@ void Imu::sense(PoolView<Imu> pool, const Context& context) {
     Stream random(context.seed, imu.key, Purpose::noise, pool.sample[index]);
     const double dt_s = pool.since[index].s();
     msg::Imu& message = imu.message->message;
-    message.orientation = normalised(imu.q_RW * now.q_WS);
+    Stream turned = random.fork(orientation_use);
+    const Vec3 turn = state.orientation.corrupt(imu.spec.orientation, {}, dt_s, turned, imu.spec.errors);
+    message.orientation = normalised(turn_by(turn) * imu.q_RW * now.q_WS);
     message.angular_velocity = state.gyro.corrupt(imu.spec.gyro, rate, dt_s, random, imu.spec.errors);
     message.linear_acceleration = state.accel.corrupt(imu.spec.accel, force, dt_s, random, imu.spec.errors);
     imu.message->publish(context.now);
@@ -274,16 +284,18 @@ constexpr const char* sdf_types[] = {"sensor:imu", "plugin:gazebo_ros_imu", "plu
                                      "plugin:hector_gazebo_ros_imu"};
 constexpr Preset presets[] = {
     {"razor_9dof",
-     "SparkFun 9DOF Razor (ITG-3200, ADXL345): 50 Hz, gyro 0.38 deg/s and accelerometer 4 mg rms, slow drift "
-     "(general "
-     "knowledge of the data sheets; the drift is uncertain).",
+     "SparkFun 9DOF Razor (ITG-3200, ADXL345, HMC5883L): 50 Hz, gyro 0.38 deg/s and accelerometer 4 mg rms, "
+     "heading 1.5 deg, level 0.5 deg, slow drift (general knowledge of the data sheets; the drift is "
+     "uncertain).",
      "{rate: 50,"
      " gyro: {x: &g {white: 6.6e-3, bias: {bias_std: 9e-4, correlation: 100}, resolution: 1.214e-3, limit: "
      "34.9},"
      " y: *g, z: *g},"
      " accel: {x: &a {white: 0.039, bias: {bias_std: 0.02, correlation: 300}, resolution: 0.0383, limit: "
      "156.9},"
-     " y: *a, z: *a}}"},
+     " y: *a, z: *a},"
+     " orientation: {x: &t {white: 2e-3, bias: {bias_std: 8.7e-3, correlation: 10}}, y: *t,"
+     " z: {white: 3e-3, bias: {bias_std: 0.026, correlation: 60}}}}"},
 };
 }  // namespace
 

@@ -24,11 +24,14 @@
 ///
 ///          with R_m the orientation half way. The orientation is that at the end of the tick. The first
 ///          sample of a device has no interval: it shows the present rate and a force without acceleration.
-/// Noise    noise/channel_noise.h, for each axis of gyro and accel. The orientation is exact.
+/// Noise    noise/channel_noise.h, for each axis of gyro and accel, and of the orientation: small turns about the axes of its
+///          reference frame, after the true one. z is the heading's error, as magnets and iron make it; x and y are those of
+///          levelling. Without keys the orientation is exact and its covariance 0.
 /// Services calibrate (std_srvs/Trigger): sets the offsets of the gyroscopes so that they read zero now, as averaging at rest
 ///          does: mean, mean_std and the bias of this moment are gone, the bias drifts on from there. Refused while the unit
 ///          turns. Errors given as stages stay.
-/// Limits   no errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East
+/// Limits   the orientation's errors do not depend on the orientation, as those of a magnet on board do, nor on accelerations.
+///          No errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East
 ///          is the world's x axis. Setting a robot's pose while it moves shows as a blow in the sample that
 ///          covers it.
 /// Cost     a few rotations and one arc tangent per sub-step; six noise channels per sample; no allocation.
@@ -84,7 +87,7 @@ struct Spec {
   double rate_hz = 100.0;
   Reference reference = Reference::world;
   Vec3 reference_rpy_rad;
-  AxesNoiseSpec gyro, accel;
+  AxesNoiseSpec gyro, accel, orientation;
   PoseSpec pose;
   double errors = 1;
 
@@ -100,6 +103,8 @@ struct Spec {
           s.reference_rpy_rad);
     visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
     visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
+    visit(Field{"orientation", "rad", "Errors of the orientation, about the axes of its reference frame."},
+          s.orientation);
     visit(Field{"pose_error", "", "Errors of the level pose."}, s.pose);
     visit(errors_field, s.errors);
   }
@@ -112,7 +117,7 @@ struct State {
   double counted_s = 0;  ///< T so far
   Vec3 velocity_S;       ///< [m/s] sum of R_m^T (dv - g h)
   Vec3 turn_S;           ///< [rad] sum of the rotation vectors
-  AxesNoise gyro, accel;
+  AxesNoise gyro, accel, orientation;
   PoseState pose;
 
   static void fields(auto& s, auto&& visit) {
@@ -124,6 +129,7 @@ struct State {
     visit(Field{"turn", "rad", "Rate integrated since the previous sample."}, s.turn_S);
     visit(Field{"gyro", "rad/s", "Errors of the gyroscopes."}, s.gyro);
     visit(Field{"accel", "m/s^2", "Errors of the accelerometers."}, s.accel);
+    visit(Field{"orientation", "rad", "Errors of the orientation."}, s.orientation);
     visit(Field{"pose", "", "State of the level pose."}, s.pose);
   }
 };

@@ -229,6 +229,51 @@ TEST(Imu, EachAxisHasItsOwnNoise) {
   EXPECT_EQ(reading(rig).linear_acceleration_covariance[0], 0);
 }
 
+// Turns of 0.2 rad about the reference's z and then of 0.1 rad of the sensor about its own x: the error is about the reference's axes.
+TEST(Imu, TheOrientationsErrorIsATurnAboutTheReferencesAxes) {
+  Rig rig(kind, test::two_wheels());
+  Node errors = Node::map();
+  errors.set("z", config({{"mean", "0.2"}}));
+  Node keys = Node::map();
+  keys.set("orientation", errors);
+  ASSERT_TRUE(rig.add("imu", keys));
+  const BodyState rolled{.X_WB = {{}, quat_from_axis_angle({1, 0, 0}, 0.1)}};
+  drive(rig, {[&](double) { return rolled; }}, 1, 1);
+  const Quat expected = quat_from_axis_angle({0, 0, 1}, 0.2) * rolled.X_WB.q, q = reading(rig).orientation;
+  EXPECT_NEAR(std::abs(q.w * expected.w + q.x * expected.x + q.y * expected.y + q.z * expected.z), 1, 1e-12);
+  for (const double each : reading(rig).orientation_covariance) EXPECT_EQ(each, 0);
+}
+
+// White noise about z, drift about x. 4000 samples: the rms of white noise within 5 / sqrt(2 * 4000) = 5.6 %.
+TEST(Imu, TheOrientationsCovarianceIsThatOfItsErrors) {
+  Rig rig(kind, test::two_wheels());
+  Node errors = Node::map();
+  errors.set("z", config({{"white", "0.01"}}));
+  Node drift = Node::map();
+  drift.set("bias", config({{"bias_std", "0.02"}, {"correlation", "30"}}));
+  errors.set("x", drift);
+  Node keys = Node::map();
+  keys.set("orientation", errors);
+  ASSERT_TRUE(rig.add("imu", keys));
+  double squares = 0, most_step = 0, before = 0;
+  constexpr int samples = 4000;
+  for (int i = 0; i < samples; ++i) {
+    drive(rig, {[](double) { return BodyState{}; }}, 1, 1);
+    const Quat q = reading(rig).orientation;
+    squares += 4 * q.z * q.z;
+    if (i > 0) most_step = std::max(most_step, std::abs(2 * q.x - before));
+    before = 2 * q.x;
+  }
+  EXPECT_NEAR(std::sqrt(squares / samples), 0.01, 0.01 * 0.056);
+  // A step of the drift has the deviation 0.02 sqrt(2 dt / tau) = 5.2e-4 at 10 ms.
+  EXPECT_GT(most_step, 5e-4);
+  EXPECT_LT(most_step, 6 * 5.2e-4);
+  const auto& C = reading(rig).orientation_covariance;
+  EXPECT_NEAR(C[8], 1e-4, 1e-12);
+  EXPECT_NEAR(C[0], 4e-4, 1e-12);
+  EXPECT_EQ(C[4], 0);
+}
+
 TEST(Imu, TheDrawnConstantSpreadsOverDevices) {
   Rig rig(kind, test::two_wheels());
   constexpr int devices = 500;
