@@ -13,17 +13,29 @@ constexpr double turned_rad = math::pi / 18;
 
 }  // namespace
 
-Status Waypoints::init(const Description& robot) {
+Status Waypoints::init(const Description& robot, Outputs& out) {
   if (spec.points_m.empty()) return Error{"there are no points", "give at least one [x, y]", {}, "/points"};
   SL_ASSIGN(odometry, robot.reading<msg::Odometry>(spec.odometry));
-  SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
+  if (spec.publish.empty()) {
+    SL_ASSIGN(drive, robot.actuator<msg::Twist>(spec.drive));
+  } else if (spec.drive.empty()) {
+    shown = out.publish<msg::Twist>(spec.publish);
+  } else {
+    return Error{"both a drive and a topic are given", "leave one of them out", {}, "/publish"};
+  }
   return {};
 }
 
 void Waypoints::step(const Observation& obs, Command& cmd) {
+  const msg::Twist twist = velocity(obs);
+  if (shown) cmd.publish(*shown, twist);
+  else cmd.set(drive, twist);
+}
+
+msg::Twist Waypoints::velocity(const Observation& obs) {
   const auto seen = obs.get(odometry);
   msg::Twist twist;
-  if (!seen.valid) return cmd.set(drive, twist);
+  if (!seen.valid) return twist;
   const Pose& X_OB = seen.message.pose.pose;
   const auto count = static_cast<std::uint32_t>(spec.points_m.size());
   const auto aim = [&] {
@@ -42,18 +54,18 @@ void Waypoints::step(const Observation& obs, Command& cmd) {
     }
   }
   if (state.next >= count) {
-    if (!spec.loop) return cmd.set(drive, twist);
+    if (!spec.loop) return twist;
     state.next = 0;  // `loop` was switched on after the last point
   }
 
   const Vec3 to = aim();
   const double distance = std::sqrt(to.x * to.x + to.y * to.y);
-  if (distance <= spec.tolerance_m) return cmd.set(drive, twist);
+  if (distance <= spec.tolerance_m) return twist;
   const double bearing = math::atan2(to.y, to.x);
   state.turning = std::abs(bearing) > (state.turning ? turned_rad : turn_first_rad) ? 1 : 0;
   if (state.turning) {
     twist.angular.z = std::clamp(2.0 * bearing, -spec.turn_speed_radps, spec.turn_speed_radps);
-    return cmd.set(drive, twist);
+    return twist;
   }
   const double curvature = 2 * (to.y / distance) / distance;
   double speed = spec.speed_mps;
@@ -63,7 +75,7 @@ void Waypoints::step(const Observation& obs, Command& cmd) {
     speed = std::min(speed, std::sqrt(2 * spec.deceleration_mps2 * distance));
   twist.linear.x = speed;
   twist.angular.z = curvature * speed;
-  cmd.set(drive, twist);
+  return twist;
 }
 
 extern const ControllerKind kind;

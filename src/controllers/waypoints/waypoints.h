@@ -2,16 +2,18 @@
 /// Waypoints: drives through a list of points, one after the other, on arcs.
 ///
 /// Reads    an Odometry of the robot's base: the drive's own, or a ground_truth. The points are in its frame.
-/// Orders   a Twist for a drive that can turn on the spot.
+/// Orders   a Twist for a drive that can turn on the spot. With `publish` it orders nothing and publishes the Twist on a topic
+///          of that name for another program, such as four_wheel_steer.
 /// Method   pure pursuit of the next point: the arc that touches the present heading and ends in the point has
 ///          curvature 2 sin(a) / d (d: distance, a: bearing of the point). A point more than 60 degrees to the side is
 ///          first turned to on the spot. Speed falls so that the turn stays within turn_speed and, before the last
 ///          point, with the square root of the distance, so that braking takes a constant deceleration.
 /// Limits   no obstacles, no heading at the points; corners are cut by at most `tolerance`.
 /// Cost     one arc tangent per step, no allocation.
-/// Errors   no points.
+/// Errors   no points; both `drive` and `publish`.
 /// Source   R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01 (1992).
 #include <array>
+#include <optional>
 
 #include "control/controller.h"
 
@@ -19,7 +21,7 @@ namespace sandlot::controllers::waypoints {
 
 struct Spec {
   std::vector<std::array<double, 2>> points_m;
-  std::string odometry, drive;
+  std::string odometry, drive, publish;
   bool loop = true;
   double tolerance_m = 0.15;
   double speed_mps = 0.5;
@@ -35,6 +37,12 @@ struct Spec {
                 1000},
           s.odometry);
     visit(Field{"drive", "", "Drive to use; empty: the only one.", 0, 0, Field::none, 1000}, s.drive);
+    visit(
+        Field{
+            "publish", "",
+            "Topic, such as cmd_vel, that shows the velocities to other programs; no drive is ordered then.",
+            0, 0, Field::none, 1000},
+        s.publish);
     visit(Field{"loop", "", "Whether to begin again after the last point.", 0, 1, tunable}, s.loop);
     visit(Field{"tolerance", "m", "Distance at which a point counts as reached.", 1e-3, 100, tunable},
           s.tolerance_m);
@@ -65,9 +73,13 @@ struct Waypoints {
 
   Reading<msg::Odometry> odometry;
   Actuator<msg::Twist> drive;
+  std::optional<Publication<msg::Twist>> shown;  ///< instead of the drive
 
-  Status init(const Description& robot);
+  Status init(const Description& robot, Outputs& out);
   void step(const Observation& obs, Command& cmd);
+
+ private:
+  msg::Twist velocity(const Observation& obs);
 };
 
 }  // namespace sandlot::controllers::waypoints

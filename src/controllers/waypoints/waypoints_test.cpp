@@ -21,13 +21,14 @@ Description description() {
 /// The controller and a unicycle that is integrated exactly.
 struct Trial {
   Waypoints controller;
+  Outputs outputs{"rover/way"};
   Topic<msg::Odometry> topic{"/rover/drive/ideal"};
   std::vector<std::uint64_t> seen{0};
   double x = 0, y = 0, theta = 0, v = 0, omega = 0;
 
   explicit Trial(Spec spec) {
     controller.spec = std::move(spec);
-    const Status ready = controller.init(description());
+    const Status ready = controller.init(description(), outputs);
     EXPECT_TRUE(static_cast<bool>(ready));
   }
   void decide(bool with_message = true) {
@@ -143,6 +144,29 @@ TEST(Waypoints, GoesOnWhenLoopIsSwitchedOnAfterTheEnd) {
   t.decide();
   EXPECT_EQ(t.controller.state.next, 0u);
   EXPECT_GT(t.v, 0);
+}
+
+TEST(Waypoints, PublishesForAnotherProgramInsteadOfOrdering) {
+  Trial t({.points_m = {{2, 1}},
+           .publish = "cmd_vel",
+           .loop = false,
+           .speed_mps = 0.3,
+           .deceleration_mps2 = 100});
+  t.topic.message.pose.pose = {};
+  t.topic.publish({});
+  const TopicBase* const topics[] = {&t.topic};
+  Command cmd;
+  cmd.bind(&t.outputs);
+  t.controller.step(Observation({}, topics, t.seen, Stream(1, 2, Purpose::controller, 3)), cmd);
+  t.outputs.commit({});
+  EXPECT_TRUE(cmd.orders().empty());
+  const auto* const shown = topic_cast<msg::Twist>(t.outputs.all()[0].topic.get());
+  EXPECT_NEAR(shown->message.linear.x, 0.3, 1e-12);
+  EXPECT_NEAR(shown->message.angular.z, 0.3 * 2 / 5, 1e-12);
+  Outputs other("rover/both");
+  Waypoints both;
+  both.spec = {.points_m = {{2, 1}}, .drive = "drive", .publish = "cmd_vel"};
+  EXPECT_FALSE(both.init(description(), other));
 }
 
 TEST(Waypoints, ReadsPointsAndNamesWhatIsMissing) {
