@@ -30,7 +30,7 @@ function(sandlot_test_executable name sources libraries)
   # Tests run in the source root; from there this is the command that those in tests/ try.
   file(RELATIVE_PATH command ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/sandlot)
   target_compile_definitions(${name} PRIVATE SANDLOT_BIN="${command}")
-  set(timeout 120)
+  set(timeout 240)
   if(SANDLOT_SANITIZE)
     set(timeout 600)  # what takes seconds takes minutes there
   endif()

@@ -113,7 +113,7 @@ TEST(OutsideProgram, IsNotStartedUnlessTheRunMay) {
 
 TEST(OutsideProgram, AMissIsLoggedAndActsAsItsKindSays) {
   const TestFolder folder;
-  model::Setup setup = with_brain(folder, {{"deadline", "30 ms"}, {"on_miss", "end"}});
+  model::Setup setup = with_brain(folder, {{"deadline", "300 ms"}, {"on_miss", "end"}});
   Node& command = *setup.instances.back().controllers.edit().front().config.find("command");
   command = Node::sequence();
   for (const char* word : {"sh", "-c", "read d; read a; echo '{}'; read b; sleep 1000"})
@@ -128,7 +128,7 @@ TEST(OutsideProgram, AMissIsLoggedAndActsAsItsKindSays) {
   ASSERT_FALSE(status);
   EXPECT_EQ(ticks, 6);  // asked at tick 5, missed, so the run ends where that is known
   EXPECT_EQ(status.error().what,
-            "program 'rover1/brain' (pipe) failed at 0.05 s: the process sent no answer within 0.03 s");
+            "program 'rover1/brain' (pipe) failed at 0.05 s: the process sent no answer within 0.3 s");
   live->remove_observer(&log);
 }
 

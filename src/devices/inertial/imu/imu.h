@@ -34,7 +34,7 @@
 ///          No errors of the axes' directions, temperature, vibration between sub-steps, filter delays. East
 ///          is the world's x axis. Setting a robot's pose while it moves shows as a blow in the sample that
 ///          covers it.
-/// Cost     a few rotations and one arc tangent per sub-step; six noise channels per sample; no allocation.
+/// Cost     a few rotations and one arc tangent per sub-step; nine noise channels per sample; no allocation.
 /// Errors   a bad spec: place and path of the key.
 /// Source   D. Titterton, J. Weston, Strapdown Inertial Navigation Technology, 2nd ed. (2004), sec. 3.5
 ///          (specific force), ch. 11 (increments of velocity and angle). REP 145.
