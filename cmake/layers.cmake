@@ -2,7 +2,7 @@
 
 # Layers that prepare, wait, or say what others computed. -O1 compiles them in some three quarters of the time (94 s to 69 s for the
 # largest batch). The bits are the same at any -O.
-set(sandlot_cold_layers app builders console draw programs run server statistics validation)
+set(sandlot_cold_layers app assets builders console control draw files formats messages model programs record run server statistics validation wire)
 
 # sandlot_layer(NAME name DEPENDS layers... THIRD_PARTY names...): every .cpp under src/name, tests and entry.cpp
 # excepted. A folder that has no .cpp (yet) gives an INTERFACE library. No file is ever listed.
@@ -44,8 +44,8 @@ function(sandlot_precompile target)
   set(pch sandlot_precompiled)
   if(arg_TEST)
     set(pch sandlot_tests_precompiled)
-  elseif(arg_COLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-    set(pch sandlot_cold_precompiled)  # it takes those of another -O no more
+  elseif(arg_COLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set(pch sandlot_cold_precompiled)  # g++ 13 takes those of another -O no more; g++ 12 takes them, and their -O with them
   endif()
   if(NOT TARGET ${pch})
     file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp.in "// The precompiled headers need a library to belong to.\n")
@@ -53,8 +53,8 @@ function(sandlot_precompile target)
     add_library(${pch} STATIC ${CMAKE_BINARY_DIR}/${pch}.cpp)
     target_link_libraries(${pch} PRIVATE fmt::fmt)
     target_precompile_headers(${pch} PRIVATE
-      <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <span> <string> <string_view>
-      <utility> <variant> <vector> <fmt/format.h>)
+      <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <deque> <filesystem> <functional> <map> <memory> <mutex> <numeric>
+      <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <utility> <variant> <vector> <fmt/format.h>)
     if(arg_TEST)
       target_link_libraries(${pch} PRIVATE GTest::gmock GTest::gtest_main)
       target_precompile_headers(${pch} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
