@@ -1,6 +1,9 @@
 #include "navigation/maps/grid.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "navigation/maps/ray_walk.h"
 
 namespace sandlot::navigation {
 
@@ -50,5 +53,20 @@ bool is_finite(const Pose2& pose) {
 }
 
 std::string point_text(Vec2 p) { return "(" + short_text(p.x) + ", " + short_text(p.y) + ")"; }
+
+bool clip_segment(Vec2 a, Vec2 d, double w, double h, double& begin, double& end) {
+  const double start[2] = {a.x, a.y}, step[2] = {d.x, d.y}, size[2] = {w, h};
+  for (int k = 0; k < 2; ++k) {
+    if (step[k] == 0) {
+      if (start[k] < 0 || start[k] >= size[k]) return false;
+      continue;
+    }
+    double enter = (0 - start[k]) / step[k], leave = (size[k] - start[k]) / step[k];
+    if (enter > leave) std::swap(enter, leave);
+    begin = std::max(begin, enter);
+    end = std::min(end, leave);
+  }
+  return begin < end;
+}
 
 }  // namespace sandlot::navigation

@@ -2,59 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "navigation/maps/ray_walk.h"
 
 namespace sandlot::navigation {
 namespace {
 
 float occupancy_log_odds(double probability) {
   return static_cast<float>(math::log(probability / (1 - probability)));
-}
-
-/// Part of the segment a + t (b - a), t in [0, 1], within [0, w] x [0, h]; false when there is none.
-bool occupancy_clip(Vec2 a, Vec2 d, double w, double h, double& begin, double& end) {
-  const double start[2] = {a.x, a.y}, step[2] = {d.x, d.y}, size[2] = {w, h};
-  for (int k = 0; k < 2; ++k) {
-    if (step[k] == 0) {
-      if (start[k] < 0 || start[k] >= size[k]) return false;
-      continue;
-    }
-    double enter = (0 - start[k]) / step[k], leave = (size[k] - start[k]) / step[k];
-    if (enter > leave) std::swap(enter, leave);
-    begin = std::max(begin, enter);
-    end = std::min(end, leave);
-  }
-  return begin < end;
-}
-
-/// Calls visit(cell) for the cells along a segment in coordinates of cells, in order, within the grid.
-template <class Visit>
-void occupancy_walk(Vec2 a, Vec2 b, int width, int height, Visit&& visit) {
-  const Vec2 d = b - a;
-  double begin = 0, end = 1;
-  if (!occupancy_clip(a, d, width, height, begin, end)) return;
-  const Vec2 first = a + begin * d, last = a + end * d;
-  Cell c{std::clamp(static_cast<int>(std::floor(first.x)), 0, width - 1),
-         std::clamp(static_cast<int>(std::floor(first.y)), 0, height - 1)};
-  const Cell stop{std::clamp(static_cast<int>(std::floor(last.x)), 0, width - 1),
-                  std::clamp(static_cast<int>(std::floor(last.y)), 0, height - 1)};
-  const int sx = d.x > 0 ? 1 : -1, sy = d.y > 0 ? 1 : -1;
-  constexpr double never = std::numeric_limits<double>::infinity();
-  // Parameter at which the segment leaves the present column and row.
-  const double dtx = d.x != 0 ? 1 / std::abs(d.x) : never, dty = d.y != 0 ? 1 / std::abs(d.y) : never;
-  double tx = d.x != 0 ? (c.x + (sx > 0) - a.x) / d.x : never,
-         ty = d.y != 0 ? (c.y + (sy > 0) - a.y) / d.y : never;
-  for (int left = std::abs(stop.x - c.x) + std::abs(stop.y - c.y);; --left) {
-    visit(c);
-    if (left <= 0) return;
-    if ((tx < ty && c.x != stop.x) || c.y == stop.y) {
-      c.x += sx;
-      tx += dtx;
-    } else {
-      c.y += sy;
-      ty += dty;
-    }
-  }
 }
 
 }  // namespace
@@ -139,7 +94,7 @@ void OccupancyMapper::add(const msg::LaserScan& scan, const Pose2& X_ML) {
     const auto [s, c] = math::sincos(X_ML.theta + static_cast<double>(scan.angle_min) +
                                      static_cast<double>(i) * static_cast<double>(scan.angle_increment));
     const Vec2 to = from + (length / resolution) * frame_.direction_to_grid({c, s});
-    occupancy_walk(from, to, geometry_.width, geometry_.height, [&](Cell cell) {
+    walk_cells(from, to, geometry_.width, geometry_.height, [&](Cell cell) {
       if (std::uint8_t* t = mark(cell); t && *t == untouched) *t = passed;
     });
     if (!echo || range > spec_.max_range_m) continue;
