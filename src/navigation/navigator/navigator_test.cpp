@@ -1,0 +1,199 @@
+#include "navigation/navigator/navigator.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "navigation/navigator/test_clutter.h"
+
+namespace sandlot::navigation {
+namespace {
+
+using test::Clutter;
+using test::Mover;
+
+struct NavigatorRun {
+  NavStatus status = NavStatus::idle;
+  std::string reason;
+  double way_m = 0, clearance_m = 1e9, seconds = 0;
+  std::uint32_t recoveries = 0;
+  Pose2 end;
+};
+
+/// Drives through a room whose drive does exactly what it is told; the navigator sees scans and poses only.
+NavigatorRun navigator_drive(Navigator& nav, const Clutter& room, std::vector<Mover> movers,
+                             const NavGoal& goal, double radius, double most_s = 120) {
+  NavigatorRun out;
+  constexpr double dt = 0.1;
+  Pose2 X{room.start.x, room.start.y, 0.6};
+  EXPECT_TRUE(nav.set_goal(goal));
+  for (; out.seconds < most_s; out.seconds += dt) {
+    const msg::LaserScan scan = test::scan(room, movers, X);
+    const NavigatorStep step = nav.step({.X_MB = X, .scan = &scan, .dt_s = dt});
+    out.status = step.status;
+    out.recoveries = step.feedback.number_of_recoveries;
+    if (step.status == NavStatus::reached || step.status == NavStatus::failed) break;
+    for (int k = 0; k < 10; ++k) {
+      const Pose2 next = driven(X, step.command, dt / 10);
+      out.way_m += math::hypot(next.x - X.x, next.y - X.y);
+      X = next;
+      out.clearance_m = std::min(out.clearance_m, room.clearance({X.x, X.y}) - radius);
+      for (Mover& m : movers) {
+        m.centre = m.centre + (dt / 10) * m.velocity;
+        if (std::abs(m.centre.x) > room.half - m.radius)
+          m.velocity.x = std::copysign(m.velocity.x, -m.centre.x);
+        if (std::abs(m.centre.y) > room.half - m.radius)
+          m.velocity.y = std::copysign(m.velocity.y, -m.centre.y);
+        // A disc takes no notice of a robot that stands or goes away: only what the robot drives into is its fault.
+        const Vec2 to_disc = m.centre - Vec2{X.x, X.y};
+        const double distance_m = test::length(to_disc);
+        const double approach_mps = step.command.vx_mps *
+                                    (to_disc.x * math::cos(X.theta) + to_disc.y * math::sin(X.theta)) /
+                                    distance_m;
+        if (approach_mps > 0.02) out.clearance_m = std::min(out.clearance_m, distance_m - radius - m.radius);
+      }
+    }
+  }
+  out.reason = nav.state().reason;
+  out.end = X;
+  return out;
+}
+
+NavigatorSpec navigator_spec(Chassis chassis = Chassis::differential) {
+  NavigatorSpec spec;
+  spec.chassis = chassis;
+  spec.radius_m = 0.2;
+  spec.margin_m = 0.02;
+  spec.area_m = 21;
+  return spec;
+}
+
+/// Goals in clutter: reached without contact, and how long the way was by the optimum.
+void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis = Chassis::differential,
+                       double longest = 1.2) {
+  int reached = 0, rooms = 0;
+  double worst = 0, sum = 0;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    const Clutter room = Clutter::random(seed, 22);
+    const double best = test::shortest(room.polygons, 0.2 + 0.1, room.start, room.goal, room.half);
+    if (!std::isfinite(best)) continue;
+    ++rooms;
+    Navigator nav = *Navigator::make(navigator_spec(chassis), 0.1, {});
+    const NavigatorRun run = navigator_drive(nav, room, {}, {{room.goal.x, room.goal.y, 0}, false}, 0.2);
+    const bool good = run.status == NavStatus::reached && run.clearance_m > 0;
+    reached += good;
+    // The goal counts as reached within its tolerance.
+    const double optimum = test::shortest(room.polygons, 0.2, room.start, room.goal, room.half) - 0.15;
+    const double ratio = run.way_m / optimum;
+    if (good) worst = std::max(worst, ratio), sum += ratio;
+    if (!good || ratio > longest)
+      std::printf("seed %d: %s %s clearance %.3f way %.2f of %.2f, %.0f s, %u recoveries\n", int(seed),
+                  name_of(run.status), run.reason.c_str(), run.clearance_m, run.way_m, optimum, run.seconds,
+                  run.recoveries);
+    EXPECT_TRUE(!good || ratio <= longest) << seed;
+  }
+  std::printf("%d of %d, mean ratio %.3f, worst %.3f\n", reached, rooms, sum / std::max(reached, 1), worst);
+  EXPECT_GE(rooms, (last - first) / 2);
+  EXPECT_GE(reached, 0.98 * rooms);
+}
+
+TEST(Navigator, ReachesGoalsInClutter) { navigator_clutter(0, 3); }
+
+// Its dynamic window prefers open space to the straight way: up to 1.23 of the optimum here.
+TEST(Navigator, AnOmniReachesGoalsInClutter) { navigator_clutter(0, 1, Chassis::omni, 1.3); }
+
+TEST(Navigator, NeverDrivesIntoMovingDiscs) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Clutter room = Clutter::random(seed, 5);
+    std::vector<Mover> movers{{{-3, 3}, {0.3, -0.1}}, {{0, 2}, {-0.1, -0.25}}, {{3, -3}, {-0.25, 0.2}}};
+    Navigator nav = *Navigator::make(navigator_spec(), 0.1, {});
+    const NavigatorRun run = navigator_drive(nav, room, movers, {{room.goal.x, room.goal.y, 0}, false}, 0.2);
+    EXPECT_EQ(run.status, NavStatus::reached) << seed << ' ' << run.reason;
+    EXPECT_GT(run.clearance_m, 0) << seed;
+  }
+}
+
+TEST(Navigator, ReachesAHeading) {
+  Clutter room;
+  room.start = {-2, 0};
+  for (const Chassis chassis :
+       {Chassis::differential, Chassis::omni, Chassis::car, Chassis::four_wheel_steer}) {
+    Navigator nav = *Navigator::make(navigator_spec(chassis), 0.1, {});
+    const NavigatorRun run = navigator_drive(nav, room, {}, {{1, 0.5, 1.5}, true}, 0.2);
+    EXPECT_EQ(run.status, NavStatus::reached) << name_of(chassis) << ' ' << run.reason;
+    EXPECT_LE(math::hypot(run.end.x - 1, run.end.y - 0.5), 0.15 + 1e-9) << name_of(chassis);
+    // A car can't turn at the goal: the tracking error of its last arc remains.
+    EXPECT_LE(std::abs(math::wrap_angle(run.end.theta - 1.5)), chassis == Chassis::car ? 0.3 : 0.15 + 1e-9)
+        << name_of(chassis);
+  }
+}
+
+TEST(Navigator, AnswersBadGoalsWithTheReason) {
+  GridMap map{{100, 100, 0.1, {-5, -5, 0}}, std::vector<std::int8_t>(10'000)};
+  for (int y = 0; y < 100; ++y)
+    for (int x = 70; x < 75; ++x) map.occupancy[map.geometry.index({x, y})] = 100;
+  Navigator nav = *Navigator::make(navigator_spec(), 0.1, map);
+  const auto refused = [&](Pose2 goal) {
+    const Status set = nav.set_goal({goal, true});
+    EXPECT_EQ(nav.state().status, set ? NavStatus::planning : NavStatus::failed);
+    return set ? std::string() : set.error().what;
+  };
+  EXPECT_NE(refused({std::nan(""), 0, 0}).find("not a finite pose"), std::string::npos);
+  EXPECT_NE(refused({0, 0, INFINITY}).find("not a finite pose"), std::string::npos);
+  EXPECT_NE(refused({80, 0, 0}).find("off the map"), std::string::npos);
+  EXPECT_NE(refused({2.2, 0, 0}).find("in an obstacle"), std::string::npos);
+  EXPECT_EQ(refused({0, 1, 0}), "");
+  // Behind a wall that reaches from side to side there is no way: rounds of recovery, then the reason.
+  EXPECT_EQ(refused({4, 0, 0}), "");
+  NavigatorStep step;
+  Pose2 X;
+  double seconds = 0;
+  for (; seconds < 300 && step.status != NavStatus::failed; seconds += 0.1) {
+    step = nav.step({.X_MB = X, .dt_s = 0.1});
+    X = driven(X, step.command, 0.1);
+  }
+  EXPECT_EQ(step.status, NavStatus::failed);
+  EXPECT_NE(nav.state().reason.find("there is no way"), std::string::npos) << nav.state().reason;
+  EXPECT_EQ(step.feedback.number_of_recoveries, 3u);
+  // Each round: patience 1 s, wait 2 s, back up 3 s, turn 3.2 s.
+  EXPECT_LT(seconds, 60);
+}
+
+TEST(Navigator, StandsWithoutAPoseAndGivesUpInTime) {
+  NavigatorSpec spec = navigator_spec();
+  spec.time_limit_s = 2;
+  Navigator nav = *Navigator::make(spec, 0.1, {});
+  ASSERT_TRUE(nav.set_goal({{1, 0, 0}, true}));
+  for (int k = 0; k < 10; ++k) {
+    const NavigatorStep step = nav.step({.X_MB = Pose2{}, .pose_std_m = 1, .dt_s = 0.1});
+    EXPECT_EQ(step.command.vx_mps, 0);
+    EXPECT_EQ(step.status, NavStatus::planning);
+  }
+  for (int k = 0; k < 15; ++k) (void)nav.step({.dt_s = 0.1});
+  EXPECT_EQ(nav.state().status, NavStatus::failed);
+}
+
+TEST(Navigator, GoesOnFromItsStateWithTheSameBits) {
+  const Clutter room = Clutter::random(3, 12);
+  Navigator a = *Navigator::make(navigator_spec(), 0.1, {}), b = *Navigator::make(navigator_spec(), 0.1, {});
+  ASSERT_TRUE(a.set_goal({{room.goal.x, room.goal.y, 0}, true}));
+  Pose2 X{room.start.x, room.start.y, 0};
+  for (int k = 0; k < 80; ++k) {
+    const msg::LaserScan scan = test::scan(room, {}, X);
+    const NavigatorInput in{.X_MB = X, .scan = k % 2 ? nullptr : &scan, .dt_s = 0.1};
+    if (k == 31) { ASSERT_TRUE(b.restore(a.state())); }
+    const NavigatorStep step = a.step(in);
+    if (k >= 31) {
+      const NavigatorStep same = b.step(in);
+      ASSERT_EQ(step.command.vx_mps, same.command.vx_mps) << k;
+      ASSERT_EQ(step.command.w_radps, same.command.w_radps) << k;
+    }
+    X = driven(X, step.command, 0.1);
+  }
+  NavigatorState other = a.state();
+  other.layer.trust.pop_back();
+  EXPECT_FALSE(b.restore(other));
+}
+
+}  // namespace
+}  // namespace sandlot::navigation
