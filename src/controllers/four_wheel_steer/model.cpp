@@ -50,12 +50,13 @@ Fit kabsch(std::span<const Vec2> before, std::span<const Vec2> after) {
     p_mean = p_mean + share * before[i];
     q_mean = q_mean + share * after[i];
   }
+  // Two loops: in one, g++ 12 makes fused operations of a difference of products beside a sum (gcc bug 107647).
   double cross = 0, along = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const Vec2 p = before[i] - p_mean, q = after[i] - q_mean;
     cross += p.x * q.y - p.y * q.x;
-    along += dot(p, q);
   }
+  for (std::size_t i = 0; i < before.size(); ++i) along += dot(before[i] - p_mean, after[i] - q_mean);
   Fit fit;
   fit.turn_rad = math::atan2(cross, along);
   const auto [s, c] = math::sincos(fit.turn_rad);
