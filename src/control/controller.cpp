@@ -3,15 +3,24 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/check.h"
 #include "base/text.h"
+#include "control/claims.h"
 #include "control/kinds_with.h"
 
 namespace sandlot {
 namespace {
 
 std::atomic<KindsWith> kinds_with = nullptr;
+thread_local std::vector<std::uint32_t>* claims = nullptr;
 
 }  // namespace
+
+ClaimNotes::ClaimNotes(std::vector<std::uint32_t>& out) {
+  SL_CHECK(claims == nullptr);
+  claims = &out;
+}
+ClaimNotes::~ClaimNotes() { claims = nullptr; }
 
 void set_kinds_with(KindsWith function) { kinds_with = function; }
 
@@ -35,7 +44,13 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
                    "name one of them: " + found->device + ", " + entry.device};
     if (match && !found) found = &entry;
   }
-  if (found) return found;
+  if (found) {
+    if (claims && &entries == &actuators) {
+      const auto place = std::lower_bound(claims->begin(), claims->end(), found->index);
+      if (place == claims->end() || *place != found->index) claims->insert(place, found->index);
+    }
+    return found;
+  }
   const std::string wanted = device.empty()
                                  ? std::string(what) + " of type " + type
                                  : std::string(what) + " '" + std::string(device) + "' of type " + type;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "messages/controller_manager_msgs.h"
 #include "messages/device_services.h"
 #include "messages/sandlot_soccer.h"
 #include "messages/simulation_interfaces.h"

@@ -33,11 +33,22 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
   const struct {
     const char *name, *request, *response;
   } expected[] = {
+      {"controller_manager_msgs/srv/ConfigureController", "string name\n", "bool ok\n"},
+      {"controller_manager_msgs/srv/ListControllers", "",
+       "controller_manager_msgs/ControllerState[] controller\n"},
+      {"controller_manager_msgs/srv/SwitchController",
+       "int32 BEST_EFFORT=1\nint32 STRICT=2\nint32 AUTO=3\nint32 FORCE_AUTO=4\nstring[] "
+       "activate_controllers\nstring[] deactivate_controllers\nint32 strictness\nbool "
+       "activate_asap\nbuiltin_interfaces/Duration timeout\n",
+       "bool ok\nstring message\n"},
+      {"controller_manager_msgs/srv/UnloadController", "string name\n", "bool ok\n"},
       {"robot_localization/srv/SetPose", "geometry_msgs/PoseWithCovarianceStamped pose\n", ""},
       {"sandlot_msgs/srv/Complete", "string line\n", "string[] candidates\n"},
       {"sandlot_msgs/srv/Console", "string line\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Decisions", "string topic\n", "sandlot_msgs/RefereeDecision[] decisions\n"},
       {"sandlot_msgs/srv/DisconnectClient", "uint64 client\n", "bool ok\nstring text\n"},
+      {"sandlot_msgs/srv/LoadController", "string name\nstring kind\nstring parameters\nstring file\n",
+       "bool ok\n"},
       {"sandlot_msgs/srv/RestartProgram", "string program\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},

@@ -101,7 +101,8 @@ Status SelfOrg::find_motors(const Description& robot) {
     for (const auto& entry : robot.actuators)
       if (entry.level.empty() && entry.type == msg::Float64::ros_type) {
         motors_.push_back({numbers_.size(), -1, 0, 1});
-        numbers_.push_back({entry.index});
+        SL_ASSIGN(const auto actuator, robot.actuator<msg::Float64>(entry.device));
+        numbers_.push_back(actuator);
       }
     if (motors_.empty())
       return Error{fmt::format("robot '{}' has no device that takes a number", robot.robot), "list `motors`"};
@@ -120,10 +121,12 @@ Status SelfOrg::add_motor(const Description& robot, const std::string& device, c
                           const std::string& path) {
   const auto* const entry = entry_of(robot.actuators, device);
   if (!entry) return not_there(robot.actuators, device, path + "/device");
+  const std::string name = entry->level.empty() ? entry->device : entry->device + "/" + entry->level;
   Motor motor{0, -1, (place.max + place.min) / 2, (place.max - place.min) / 2};
   if (entry->type == msg::Float64::ros_type) {
     motor.target = numbers_.size();
-    numbers_.push_back({entry->index});
+    SL_ASSIGN(const auto actuator, robot.actuator<msg::Float64>(name));
+    numbers_.push_back(actuator);
   } else if (entry->type == msg::Twist::ros_type) {
     const auto found = std::find(std::begin(twist_components), std::end(twist_components), place.value);
     if (found == std::end(twist_components))
@@ -132,9 +135,10 @@ Status SelfOrg::add_motor(const Description& robot, const std::string& device, c
                    {},
                    path + "/value"};
     motor.component = static_cast<int>(found - std::begin(twist_components));
-    while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != entry->index)
+    SL_ASSIGN(const auto actuator, robot.actuator<msg::Twist>(name));
+    while (motor.target < twists_.size() && twists_[motor.target].actuator.slot != actuator.slot)
       ++motor.target;
-    if (motor.target == twists_.size()) twists_.push_back({{entry->index}, {}});
+    if (motor.target == twists_.size()) twists_.push_back({actuator, {}});
   } else {
     return Error{fmt::format("'{}' takes a {}", device, entry->type),
                  "a motor takes a Float64 or a Twist",

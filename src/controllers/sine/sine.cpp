@@ -21,7 +21,10 @@ double shape_at(const Spec& spec, double turns) {
 Status Sine::init(const Description& robot) {
   if (spec.motors.empty()) {
     for (const Description::Entry& entry : robot.actuators)
-      if (entry.level.empty() && entry.type == msg::Float64::ros_type) motors.push_back({entry.index});
+      if (entry.level.empty() && entry.type == msg::Float64::ros_type) {
+        SL_ASSIGN(const auto motor, robot.actuator<msg::Float64>(entry.device));
+        motors.push_back(motor);
+      }
     if (motors.empty())
       return Error{"robot '" + robot.robot + "' has no device that takes a number", "add joint_motors"};
   }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/read.h"
+#include "base/text.h"
 #include "files/text.h"
 #include "files/yaml.h"
 
@@ -33,13 +34,7 @@ constexpr ControllerType types[] = {
 
 constexpr int max_depth = 16;
 
-/// One controller as the file spreads it.
-struct Controller {
-  std::string name;
-  Node type;
-  Node parameters;
-  Place place;
-};
+using Controller = DeclaredController;
 
 std::string_view last_part(std::string_view key) {
   const std::size_t slash = key.rfind('/');
@@ -59,7 +54,7 @@ Status add(Gathered& out, std::string name, const Node& type, Node parameters, c
     if (other.name == name)
       return Error{"there are two controllers named '" + name + "'",
                    "the other one is at " + to_string(other.place), place};
-  out.controllers.push_back({std::move(name), type, std::move(parameters), place});
+  out.controllers.push_back({std::move(name), type, std::move(parameters), {}, place});
   return {};
 }
 
@@ -281,6 +276,38 @@ Status make_devices(const Controller& controller, const ControllerType& type, co
 }  // namespace
 
 std::span<const ControllerType> controller_types() { return types; }
+
+Result<std::optional<DeclaredController>> find_controller(const Node& file, std::string_view name) {
+  Gathered gathered;
+  SL_TRY(gather(file, gathered, 0));
+  std::optional<DeclaredController> found;
+  std::vector<std::string> known;
+  for (DeclaredController& each : gathered.controllers) {
+    known.push_back(each.name);
+    if (each.name == name) found = std::move(each);
+  }
+  for (const auto& [owner, parameters] : gathered.parameters) {
+    if (owner != name) continue;
+    if (!found) found = {owner, {}, Node::map(parameters.place()), {}, parameters.place()};
+    merge(found->parameters, parameters);
+  }
+  if (found) found->gains = std::move(gathered.gains);
+  if (!found && file.find("controller_manager"))
+    return file.error("this file declares no controller '" + std::string(name.substr(0, 100)) + "'",
+                      suggestion(name, known));
+  return found;
+}
+
+Result<std::vector<model::DeviceDecl>> joint_devices(const DeclaredController& controller,
+                                                     Diagnostics& diagnostics) {
+  const auto type = std::find_if(std::begin(types), std::end(types), [&](const ControllerType& each) {
+    return controller.type.text() == each.type;
+  });
+  SL_CHECK(type != std::end(types));
+  std::vector<model::DeviceDecl> out;
+  SL_TRY(make_devices(controller, *type, controller.gains, out, diagnostics));
+  return out;
+}
 
 Result<std::vector<model::DeviceDecl>> parse_joint_controllers(std::string_view text, const std::string& file,
                                                                Diagnostics& diagnostics) {

@@ -12,8 +12,10 @@
 /// Errors   no YAML, a controller without joints or gains where it needs them, one name twice: with line.
 /// Limits   a type that is not in controller_types() is named in one warning; of a known one, keys that have no
 ///          counterpart are ignored (rates of the loop, tolerances, topics). Limits of the integral have no effect.
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/model.h"
@@ -30,6 +32,21 @@ struct ControllerType {
 
 /// All that are known, in the order of their names.
 std::span<const ControllerType> controller_types();
+
+/// One controller as a file spreads it.
+struct DeclaredController {
+  std::string name;
+  Node type;        ///< null: the file gives its parameters alone
+  Node parameters;  ///< what is under its name, and under its ros__parameters
+  Node gains;       ///< of joints, where the file keeps them apart (ROS 1)
+  Place place;
+};
+/// The controller of that name. Nothing: the file knows no such name and has no controller_manager, so that it may be something
+/// else than a file of controllers. Errors: as above; a file with a controller_manager that has others only.
+Result<std::optional<DeclaredController>> find_controller(const Node& file, std::string_view name);
+/// The devices that a controller becomes. @pre its type is in controller_types()
+Result<std::vector<model::DeviceDecl>> joint_devices(const DeclaredController& controller,
+                                                     Diagnostics& diagnostics);
 
 /// The devices that a file declares, on the first link, in the order of the file.
 Result<std::vector<model::DeviceDecl>> read_joint_controllers(const std::string& path,

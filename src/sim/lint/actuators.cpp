@@ -9,34 +9,9 @@
 namespace sandlot::lint_rules {
 namespace {
 
-/// It takes commands and has a hand in every sub-step.
-bool drives(const Kind& kind) {
-  return (kind.phases & phase_pre_substep) &&
-         std::any_of(kind.levels.begin(), kind.levels.end(), [](const LevelInfo& l) { return *l.command; });
-}
-
 bool stopped(const model::DeviceDecl& device) {
   const Node* const active = device.config.find("active");
   return active && active->text() == "false";
-}
-
-bool can_turn_or_slide(const model::Joint& joint) {
-  using model::JointType;
-  return joint.type == JointType::revolute || joint.type == JointType::continuous ||
-         joint.type == JointType::prismatic;
-}
-
-/// Those it names; where a list of joints may be left out and is, all.
-std::vector<std::uint32_t> driven_joints(const model::DeviceDecl& device, const Kind& kind,
-                                         const model::Model& model) {
-  std::vector<std::uint32_t> joints = joints_of(device, model);
-  if (!joints.empty()) return joints;
-  const std::vector<FieldInfo> fields = kind.describe();
-  if (std::none_of(fields.begin(), fields.end(), [](const FieldInfo& f) { return f.path == "joints"; }))
-    return joints;
-  for (std::uint32_t i = 0; i < model.joints.size(); ++i)
-    if (can_turn_or_slide(model.joints[i])) joints.push_back(i);
-  return joints;
 }
 
 }  // namespace

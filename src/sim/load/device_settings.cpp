@@ -75,6 +75,26 @@ std::vector<std::uint32_t> joints_of(const model::DeviceDecl& device, const mode
   return joints;
 }
 
+bool drives(const Kind& kind) {
+  return (kind.phases & phase_pre_substep) &&
+         std::any_of(kind.levels.begin(), kind.levels.end(), [](const LevelInfo& l) { return *l.command; });
+}
+
+std::vector<std::uint32_t> driven_joints(const model::DeviceDecl& device, const Kind& kind,
+                                         const model::Model& model) {
+  using model::JointType;
+  std::vector<std::uint32_t> joints = joints_of(device, model);
+  if (!joints.empty()) return joints;
+  const std::vector<FieldInfo> fields = kind.describe();
+  if (std::none_of(fields.begin(), fields.end(), [](const FieldInfo& f) { return f.path == "joints"; }))
+    return joints;
+  for (std::uint32_t i = 0; i < model.joints.size(); ++i)
+    if (const JointType type = model.joints[i].type;
+        type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic)
+      joints.push_back(i);
+  return joints;
+}
+
 std::string kinds_with(std::string_view message_type, bool commands) {
   std::vector<std::string> names;
   for (const Kind* const kind : device_kinds())

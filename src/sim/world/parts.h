@@ -101,6 +101,7 @@ struct SimulationParts {
     Owned<Wait> wait;                      ///< null: it is a controller
     std::unique_ptr<std::string> failure;  ///< in its last step; ends the run. Null: it did not fail
     bool ended = false;
+    bool inactive = false;  ///< it was stopped, or is not started yet: it does not step and gives no orders
     Command command;
     std::vector<Route> routes;  ///< per actuator of the description
     Owned<Outputs> outputs;     ///< null: it has no topics
@@ -109,8 +110,16 @@ struct SimulationParts {
     std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< one object for equal declarations
     const model::ControllerDecl& decl;
     std::string path;
+    std::vector<std::uint32_t> claims;  ///< actuators of the description that it looked up (control/claims.h)
   };
   using ProgramEntries = std::vector<Owned<ProgramEntry>>;
+  /// A controller that came while the run went on (sim/world/controllers.h) and is no program: one that is not configured yet,
+  /// or one that drives joints by devices.
+  struct LoadedController {
+    model::ControllerDecl decl;
+    std::vector<model::DeviceDecl> devices;  ///< none: it becomes a program when it is configured
+    bool configured = false;                 ///< its devices are the robot's
+  };
   struct Entity {
     model::Instance instance;
     InstanceId id;
@@ -119,6 +128,7 @@ struct SimulationParts {
     Owned<EnergyAccount> energy;  ///< null: it has no battery
     std::vector<Owned<Device>> devices;
     ProgramEntries programs;
+    std::vector<LoadedController> loaded;  ///< in the order in which they came
     /// The model without the masses of devices, of an instance whose devices have some; else null.
     std::shared_ptr<const model::Model> declared_model;
 

@@ -75,7 +75,8 @@ void Programs::gather(Entities entities) {
     sources_.push_back(source);
     if (program.outputs) publishing_.push_back(&program);
     if (program.program->outside()) outside_.push_back(&program);
-    if (!program.ended) (program.schedule || program.wait ? timed_ : running_).push_back(&program);
+    if (!program.ended && !program.inactive)
+      (program.schedule || program.wait ? timed_ : running_).push_back(&program);
   };
   for (auto& entity : entities)
     for (auto& program : entity->programs) add(*program, entity->serial);
@@ -284,7 +285,7 @@ std::size_t saved_readings(const SimulationParts::ProgramEntry& program) {
 
 void Programs::save(const ProgramEntry& program, ByteWriter& w) {
   write(w, program.steps);
-  write(w, program.ended);
+  write(w, static_cast<std::uint8_t>((program.ended ? 1 : 0) | (program.inactive ? 2 : 0)));
   const std::size_t readings = saved_readings(program);
   write(w, static_cast<std::uint32_t>(readings));
   for (std::size_t i = 0; i < readings; ++i) write(w, program.seen[i]);
@@ -312,7 +313,11 @@ void Programs::save(const ProgramEntry& program, ByteWriter& w) {
 bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
   const std::size_t readings = program.seen.size();
   read(r, program.steps);
-  read(r, program.ended);
+  std::uint8_t flags = 0;
+  read(r, flags);
+  if (flags > 3) return false;
+  program.ended = (flags & 1) != 0;
+  program.inactive = (flags & 2) != 0;
   read(r, program.seen);
   const std::size_t saved = program.seen.size();
   program.seen.resize(readings, 0);

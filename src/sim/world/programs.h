@@ -53,6 +53,14 @@ class Programs {
 
   Status add(Entity& entity, std::shared_ptr<const model::ControllerDecl> declared, Time now,
              Diagnostics& diagnostics);
+  /// As add(), for a controller that comes while the run goes on: it is inactive. On an error nothing has changed.
+  Status add_inactive(Entities entities, Entity& entity,
+                      std::shared_ptr<const model::ControllerDecl> declared, Time now);
+  /// Takes a program from its robot. Refused while another one reads a topic of it; then nothing has changed.
+  Status remove(Entities entities, Entity& entity, std::size_t index);
+  /// Lets a program step from this tick on, or no more: orders that it has given and that wait are dropped then. One with a
+  /// rate of its own counts its steps from now on.
+  void set_active(ProgramEntry& program, bool active, Time now);
   /// Makes the setup's teams with their programs, for the entities there are.
   Status add_teams(Entities entities, Time now, Diagnostics& diagnostics);
   const std::vector<Team>& teams() const { return teams_; }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "control/claims.h"
 #include "control/kinds_with.h"
 #include "controllers/controllers.h"
 #include "programs/programs.h"
@@ -100,6 +101,40 @@ Status Programs::add(Entity& entity, std::shared_ptr<const model::ControllerDecl
   return {};
 }
 
+Status Programs::add_inactive(Entities entities, Entity& entity,
+                              std::shared_ptr<const model::ControllerDecl> declared, Time now) {
+  Diagnostics ignored;
+  SL_TRY(add(entity, std::move(declared), now, ignored));
+  entity.programs.back()->inactive = true;
+  // A team's programs may read its topics.
+  if (Status fits = describe_team(entities, entity.instance.team); !fits) {
+    entity.programs.pop_back();
+    return fits;
+  }
+  return {};
+}
+
+Status Programs::remove(Entities entities, Entity& entity, std::size_t index) {
+  const auto place = entity.programs.begin() + static_cast<std::ptrdiff_t>(index);
+  Owned<ProgramEntry> taken = std::move(*place);
+  entity.programs.erase(place);
+  changed_ = true;
+  Status described = describe_again(entities, entity);
+  if (!described)
+    entity.programs.insert(entity.programs.begin() + static_cast<std::ptrdiff_t>(index), std::move(taken));
+  return described;
+}
+
+void Programs::set_active(ProgramEntry& program, bool active, Time now) {
+  program.inactive = !active;
+  program.command.clear();
+  if (active && program.schedule) {
+    program.schedule->start = program.schedule->due = now;
+    program.schedule->step = 0;
+  }
+  changed_ = true;
+}
+
 Status Programs::add_teams(Entities entities, Time now, Diagnostics& diagnostics) {
   for (const model::TeamDecl& decl : setup_.teams) {
     // A forged snapshot may name it anything.
@@ -178,6 +213,7 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
             setup_.clock.mode == model::Clock::Mode::fixed ? setup_.step : setup_.clock.min_step);
     }
     program->description = describe(driven, before, period_s);
+    const ClaimNotes notes(program->claims);
     if (program->description->robot == driven.name) {
       status = program->program->init(*program->description, config, *outputs);
     } else {
@@ -418,6 +454,7 @@ Result<Programs::Remade> Programs::remake(const Driven& driven, const ProgramEnt
     SL_ASSIGN(auto program, make(driven, out.programs, old->shared_decl, {}, given_before));
     program->steps = old->steps;
     program->ended = old->ended;
+    program->inactive = old->inactive;
     if (program->schedule) *program->schedule = *old->schedule;
     if (program->wait) {
       *program->wait = *old->wait;

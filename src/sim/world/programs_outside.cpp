@@ -131,6 +131,7 @@ std::optional<Error> Programs::answer(ProgramEntry& entry, const OutsideAnswer& 
   const auto thrown = caught([&] { resumed = entry.program->answer(answer, forms, entry.command); });
   if (thrown) resumed.failure = thrown;
   take(entry, std::move(resumed));
+  if (entry.inactive) entry.command.clear();  // it was asked before it was stopped
   changed_ = changed_ || entry.ended;
   if (!entry.failure) return std::nullopt;
   return failure_of(entry, now);

@@ -157,8 +157,10 @@ Status Simulation::Processor::operator()(const SampleRequest& request) {
   return sim.devices_.request_sample(*device, sim.now_ + sim.step_);
 }
 
-/// A device that is dead or stuck answers nothing.
+/// A device that is dead or stuck answers nothing. A robot's controller manager is called as if it were one of its devices.
 Status Simulation::Processor::operator()(const CallRequest& request) {
+  if (Entity* const robot = sim.managed_robot(request.device))
+    return sim.call_controllers(*robot, request, response);
   SL_ASSIGN(Device* const device, device_named(request.device));
   return sim.devices_.call(*device, request.service, request.bytes, response, sim.context());
 }

@@ -102,13 +102,15 @@ void Simulation::save_run(ByteWriter& w) const {
   // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
   const bool scaled = errors_scaled();
   const bool ordered = devices_.any_failure_ordered();
+  const bool loaded = std::any_of(entities_.begin(), entities_.end(),
+                                  [](const auto& entity) { return !entity->loaded.empty(); });
   const std::vector<ManualOverride>& overrides = commands_.overrides();
-  if (!pulls_.empty() || !overrides.empty() || scaled || ordered)
+  if (!pulls_.empty() || !overrides.empty() || scaled || ordered || loaded)
     write_block(w, [&](ByteWriter& block) { pulls_.save(block); });
-  if (!overrides.empty() || scaled || ordered)
+  if (!overrides.empty() || scaled || ordered || loaded)
     write_block(w, [&](ByteWriter& block) { write(block, overrides); });
-  if (scaled || ordered) write_block(w, [&](ByteWriter& block) { save_errors(block); });
-  if (!ordered) return;
+  if (scaled || ordered || loaded) write_block(w, [&](ByteWriter& block) { save_errors(block); });
+  if (!ordered && !loaded) return;
   write_block(w, [&](ByteWriter& block) {
     for (const auto& entity : entities_)
       for (const auto& device : entity->devices) {
@@ -118,6 +120,7 @@ void Simulation::save_run(ByteWriter& w) const {
         write(block, device->faults->order.factor);
       }
   });
+  if (loaded) write_block(w, [&](ByteWriter& block) { save_loaded(block); });
 }
 
 bool Simulation::errors_scaled() const {
@@ -167,7 +170,10 @@ bool Simulation::load_run(ByteReader& r) {
       return false;
     if (!devices_.order_failure(*device, order)) return false;
   }
-  return r.ok() && failures.ok();
+  if (!r.ok() || !failures.ok()) return false;
+  if (r.remaining() == 0) return true;
+  ByteReader loaded = read_block(r);
+  return r.ok() && load_loaded(loaded);
 }
 
 /// Calls visit(path, key, fill) for each part of the State after the run's own: media, rules, then entities in creation order.
