@@ -42,17 +42,19 @@ using CommandResult = Result<std::optional<std::string>>;
 enum class Argument : std::uint8_t {
   none,  ///< free: a number, a text
   command,
-  list,       ///< what `list` lists
-  thing,      ///< an instance
-  device,     ///< its path
-  level,      ///< of the device before it
-  service,    ///< of the device before it
-  agent,      ///< a robot's program
-  link,       ///< of the thing before it
-  parameter,  ///< its address
-  value,      ///< its address
-  target,     ///< a device that takes commands
-  type,       ///< the message type that the target before it takes
+  list,            ///< what `list` lists
+  thing,           ///< an instance
+  device,          ///< its path
+  level,           ///< of the device before it
+  service,         ///< of the device before it
+  controller_act,  ///< what `controllers` does, or a robot
+  controller,      ///< its path
+  agent,           ///< a robot's program
+  link,            ///< of the thing before it
+  parameter,       ///< its address
+  value,           ///< its address
+  target,          ///< a device that takes commands
+  type,            ///< the message type that the target before it takes
   model,
   off,
   speed,
@@ -84,7 +86,7 @@ std::vector<std::string> command_names(const Console::Options& options);
 struct PendingRequest {
   Request request;
   std::string text;
-  const MessageInfo* response = nullptr;  ///< of a CallRequest
+  const MessageInfo* response = nullptr;  ///< of a CallRequest whose response is shown
 };
 /// Hands requests to the session, which answers for all of them together. @pre there is at least one
 CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests);
@@ -125,6 +127,7 @@ CommandResult cmd_sample(CommandCall& call);
 CommandResult cmd_press(CommandCall& call);
 CommandResult cmd_referee(CommandCall& call);
 CommandResult cmd_call(CommandCall& call);
+CommandResult cmd_controllers(CommandCall& call);
 CommandResult cmd_values(CommandCall& call);
 CommandResult cmd_events(CommandCall& call);
 CommandResult cmd_pose(CommandCall& call);

@@ -90,6 +90,17 @@ const std::vector<BuiltinCommand>& table() {
        .arguments = {A::device, A::service, A::none},
        .act = cmd_call,
        .submits = true},
+      {.name = "controllers",
+       .usage =
+           "[ROBOT] [--json] | load CONTROLLER KIND [KEYS] | load CONTROLLER FILE.yaml | configure, start, "
+           "stop or unload CONTROLLER... | start CONTROLLER... stop CONTROLLER...",
+       .help =
+           "Controllers of robots with their states; or loads, configures, starts, stops and unloads some "
+           "(controllers load rover/weave sine {period: 2}).",
+       .arguments = {A::controller_act, A::controller},
+       .act = cmd_controllers,
+       .submits = true,
+       .plain = true},
       {.name = "pause", .help = "Stops the clock.", .steers = true, .act = cmd_pause},
       {.name = "run",
        .aliases = "play",

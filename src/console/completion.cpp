@@ -7,6 +7,7 @@
 #include "devices/kind.h"
 #include "sim/watch/parameters.h"
 #include "sim/watch/values.h"
+#include "sim/world/controllers.h"
 #include "sim/world/faults.h"
 
 namespace sandlot {
@@ -140,6 +141,17 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
     case Argument::agent:
       for (const auto& entity : simulation.entities())
         for (const auto& program : entity->programs) out.add(program->path);
+      break;
+    case Argument::controller_act:
+      for (const char* each : {"load", "configure", "start", "stop", "unload"}) out.add(each);
+      for (const auto& entity : simulation.entities())
+        if (entity->instance.is_robot) out.add(entity->instance.name);
+      break;
+    case Argument::controller:
+      for (const auto& entity : simulation.entities())
+        if (entity->instance.is_robot && starts_with(entity->instance.name + "/", robot_of(out.prefix())))
+          for (const ControllerView& each : controllers_of(simulation, *entity))
+            out.add(entity->instance.name + "/" + each.name);
       break;
     case Argument::link:
       if (const Entity* const entity = before.empty() ? nullptr : simulation.find_entity(before.front()))

@@ -313,8 +313,9 @@ CommandResult submit(CommandCall& call, std::vector<PendingRequest> requests) {
     const auto done = [waiting, finish, text = each.text](const Status& status) {
       finish(status, text + " from tick " + std::to_string(waiting->session.simulation().tick_index()));
     };
-    const auto answered = [finish, text = each.text,
+    const auto answered = [finish, done, text = each.text,
                            info = each.response](const Result<std::vector<std::byte>>& response) {
+      if (!info) return done(response ? Status() : Status(response.error()));
       std::string json;
       const Status status = response ? cdr_to_json(*info, *response, json) : Status(response.error());
       finish(status, text + ": " + json);

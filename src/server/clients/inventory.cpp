@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "messages/sensor_images.h"
 #include "server/clients/preview.h"
+#include "sim/world/controllers.h"
 
 namespace sandlot::server {
 namespace {
@@ -70,6 +71,11 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
     for (const auto& device : entity->devices)
       for (const DeviceService& service : simulation.kind(*device).services)
         out->services.push_back({"/" + device->path + "/" + service.name, device->path, &service});
+    if (entity->instance.is_robot) {
+      const std::string manager = entity->instance.name + "/" + std::string(controller_manager_name);
+      for (const DeviceService& service : Simulation::controller_services())
+        out->services.push_back({"/" + manager + "/" + service.name, manager, &service});
+    }
     for (const auto& program : entity->programs) {
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;

@@ -29,7 +29,7 @@ struct Inventory {
   };
   struct Service {
     std::string name;    ///< "/rover/odometry/reset"
-    std::string device;  ///< "rover/odometry"
+    std::string device;  ///< "rover/odometry"; or a robot's controller manager
     const DeviceService* service = nullptr;
   };
   struct Program {
