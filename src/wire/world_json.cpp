@@ -204,7 +204,13 @@ void write_part(JsonWriter& w, std::string_view name, std::string_view path, std
 
 void write_programs(JsonWriter& w, const Simulation::ProgramEntries& programs) {
   w.list([&] {
-    for (const auto& program : programs) write_part(w, program->decl.name, program->path, program->decl.kind);
+    for (const auto& program : programs)
+      w.object([&] {
+        w.key("name").text(program->decl.name);
+        w.key("path").text(program->path);
+        w.key("kind").text(program->decl.kind);
+        if (program->inactive) w.key("inactive").flag(true);
+      });
   });
 }
 

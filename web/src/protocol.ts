@@ -122,6 +122,8 @@ export interface Part {
   /** "rover/controller", "red/coach", "media/air", "rules/goals". */
   path: string;
   kind: string;
+  /** Of a program that was stopped, or is not started yet. */
+  inactive?: boolean;
 }
 
 export interface Team {

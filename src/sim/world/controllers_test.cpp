@@ -137,16 +137,17 @@ struct Bench {
   /// "ramp active drive" of each.
   std::vector<std::string> states() {
     std::vector<std::string> out;
-    for (const ControllerView& each : controllers_of(*simulation, *simulation->find_entity("rover1"))) {
+    for (const ControllerView& each : controllers_of(*simulation, robot())) {
       out.push_back(each.name + " " + name_of(each.state));
       for (const std::string& claim : each.claims) out.back() += " " + claim;
     }
     return out;
   }
+  const Simulation::Entity& robot() const { return *std::as_const(*simulation).find_entity("rover1"); }
   double value(const std::string& address) { return test::value(*simulation, address); }
   /// The speed that the drive is ordered [m/s].
   double ordered() {
-    for (const auto& device : simulation->find_entity("rover1")->devices)
+    for (const auto& device : robot().devices)
       for (const auto& slot : device->commands)
         if (const auto* const twist = topic_cast<msg::Twist>(slot.topic.get());
             twist && device->decl.name == "drive")
@@ -386,7 +387,7 @@ TEST(JointControllers, ChangeFromSpeedToPositionInOneTickAndNeverShareAJoint) {
                                           "turn active joint left_wheel_joint"));
   EXPECT_EQ(bench.unload("spin"), "");
   EXPECT_THAT(bench.states(), ElementsAre("turn active joint left_wheel_joint"));
-  EXPECT_EQ(bench.simulation->find_entity("rover1")->devices.size(), 3u);  // laser, truth, turn
+  EXPECT_EQ(bench.robot().devices.size(), 3u);  // laser, truth, turn
   EXPECT_THAT(bench.load("base", "", wheels, "w.yaml"),
               HasSubstr("w.yaml:5:18: a diff_drive_controller/DiffDriveController becomes a device of kind "
                         "diff_drive, which can be neither started nor stopped"));
@@ -464,7 +465,7 @@ TEST(Controllers, SwitchedAlikeGiveTheSameHashInAnyNumberOfThreads) {
 TEST(Controllers, OfAForgedSnapshotAreRefused) {
   Bench bench;
   EXPECT_EQ(bench.load("late", "ramp"), "");
-  const_cast<Simulation::LoadedController&>(bench.simulation->find_entity("rover1")->loaded.front())
+  const_cast<Simulation::LoadedController&>(bench.robot().loaded.front())
       .decl.name = "a b";
   Diagnostics diagnostics;
   const auto restored = Simulation::restore(bench.simulation->snapshot(), options, diagnostics);

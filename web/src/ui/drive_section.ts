@@ -23,8 +23,9 @@ export class DriveSection {
     this.element.append(h('div', {class: 'drive-row'}, this.button, h('span', {class: 'mono faint ellipsis', title: `${drive.topic}, ${drive.type}`}, drive.topic)));
     this.element.append(this.limit('Speed', 'm/s', 0.05, 3, 0.05, () => teleop.linear_mps, (v) => teleop.setLimits(v, teleop.angular_radps)),
         this.limit('Turning', 'rad/s', 0.1, 6, 0.1, () => teleop.angular_radps, (v) => teleop.setLimits(teleop.linear_mps, v)));
-    if ((instance.controllers ?? []).length > 0) {
-      this.element.append(h('p', {class: 'note'}, `${instance.controllers.map((c) => c.name).join(', ')} commands this robot too. While you steer, only you are heard; let go and it goes on by itself.`));
+    const active = (instance.controllers ?? []).filter((c) => !c.inactive);
+    if (active.length > 0) {
+      this.element.append(h('p', {class: 'note'}, `${active.map((c) => c.name).join(', ')} commands this robot too. While you steer, only you are heard; let go and it goes on by itself.`));
     }
     this.stop = teleop.onChange.on(() => this.steering());
     this.steering();

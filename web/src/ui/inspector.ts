@@ -4,6 +4,7 @@ import type {Context, Panel} from '../app/context';
 import {word} from '../app/format';
 import {type Selected, worldParts} from '../app/store';
 import type {Device, Instance, Kind, Part as WorldPart} from '../protocol';
+import {ControllersSection} from './controllers_section';
 import {clear, h, setReason} from './dom';
 import {DriveSection} from './drive_section';
 import {FieldRow} from './field_row';
@@ -153,7 +154,7 @@ export class Inspector implements Panel {
     if ((instance.devices ?? []).length > 0) this.form([errorsView(instance.name, 'Factor on the errors of all its devices')], 'Errors');
     if (world && (instance.devices ?? []).length > 0) this.parts.push(new ErrorModels(this.context, world, [instance], false));
     this.list('Devices', 'chip', (instance.devices ?? []).map((d) => ({path: d.path, name: d.name, detail: `${d.kind.replace(/_/g, ' ')}${d.active?.length ? ` · ${d.active.join(', ')}` : ''}`})));
-    this.list('Controllers', 'brain', (instance.controllers ?? []).map((c) => partRow(c, c.name)));
+    if (instance.robot) this.parts.push(new ControllersSection(this.context, instance.name));
     this.list('Team', 'brain', (world?.teams ?? []).find((team) => team.name === instance.team)?.programs.map((p) => partRow(p, p.path)) ?? []);
   }
 

@@ -103,7 +103,7 @@ export class Teleop {
     this.armed = name;
     this.drive = drive;
     this.publisher = this.context.client.publisher(drive.topic, drive.type);
-    this.period_ms = (instance?.controllers ?? []).length > 0 ? contested_period_ms : usual_period_ms;
+    this.period_ms = (instance?.controllers ?? []).some((c) => !c.inactive) ? contested_period_ms : usual_period_ms;
     this.timer = setInterval(() => this.tick(), this.period_ms);
     this.onChange.emit();
   }
