@@ -1,5 +1,6 @@
 #include "server/clients/inventory.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/text.h"
@@ -9,6 +10,9 @@
 
 namespace sandlot::server {
 namespace {
+
+/// A swarm has ten thousand: their services would be most of what a client is told.
+constexpr std::ptrdiff_t most_managed_robots = 200;
 
 bool is_twist(const MessageInfo& info) {
   return info.name == "geometry_msgs/msg/Twist" || info.name == "geometry_msgs/msg/TwistStamped";
@@ -49,6 +53,10 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
         for (const Outputs::Output& output : program->outputs->all())
           out->topics.push_back({output.topic->name(), &output.topic->info(), program->path});
   };
+  const auto& all = simulation.entities();
+  const bool managed = std::count_if(all.begin(), all.end(), [](const auto& each) {
+                         return each->instance.is_robot;
+                       }) <= most_managed_robots;
   for (const auto& entity : simulation.entities()) {
     if (entity->instance.is_robot) out->robots.push_back({entity->instance.name, entity->instance.team});
     for (const auto& device : entity->devices) {
@@ -71,7 +79,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
     for (const auto& device : entity->devices)
       for (const DeviceService& service : simulation.kind(*device).services)
         out->services.push_back({"/" + device->path + "/" + service.name, device->path, &service});
-    if (entity->instance.is_robot) {
+    if (entity->instance.is_robot && managed) {
       const std::string manager = entity->instance.name + "/" + std::string(controller_manager_name);
       for (const DeviceService& service : Simulation::controller_services())
         out->services.push_back({"/" + manager + "/" + service.name, manager, &service});
