@@ -266,7 +266,7 @@ TEST(Controllers, OfWhichTwoWouldCommandOneDeviceAreRefusedAndNothingIsStopped) 
       "controller 'ramp' and controller 'other' both command 'rover1/drive'; stop one of them in the same "
       "switch");
   EXPECT_EQ(bench.change({"no"}, {"controller"}),
-            "robot 'rover1' has no controller 'no'; did you mean 'other'?");
+            "robot 'rover1' has no controller 'no'; known are: controller, ramp, other");
   EXPECT_THAT(bench.states(),
               ElementsAre("controller active drive", "ramp inactive drive", "other inactive drive"));
   EXPECT_EQ(bench.change({"ramp"}, {"controller"}), "");
@@ -365,11 +365,11 @@ TEST(JointControllers, OfAFileOfRos2ControlTurnJointsWhileTheyAreActive) {
   EXPECT_EQ(bench.change({"spin"}, {}), "");
   command(2);
   advance(*bench.simulation, 200);
-  EXPECT_NEAR(bench.value("rover1.joint.left_wheel_joint.velocity"), 2, 1e-3);
+  EXPECT_NEAR(bench.value("rover1.joints.left_wheel_joint.velocity"), 2, 1e-3);
   EXPECT_EQ(bench.change({}, {"spin"}), "");
   command(-5);
   advance(*bench.simulation, 20);
-  EXPECT_GT(bench.value("rover1.joint.left_wheel_joint.velocity"), 0) << "the joint is free and rolls on";
+  EXPECT_GT(bench.value("rover1.joints.left_wheel_joint.velocity"), 0) << "the joint is free and rolls on";
 }
 
 TEST(JointControllers, ChangeFromSpeedToPositionInOneTickAndNeverShareAJoint) {
@@ -465,8 +465,7 @@ TEST(Controllers, SwitchedAlikeGiveTheSameHashInAnyNumberOfThreads) {
 TEST(Controllers, OfAForgedSnapshotAreRefused) {
   Bench bench;
   EXPECT_EQ(bench.load("late", "ramp"), "");
-  const_cast<Simulation::LoadedController&>(bench.robot().loaded.front())
-      .decl.name = "a b";
+  const_cast<Simulation::LoadedController&>(bench.robot().loaded.front()).decl.name = "a b";
   Diagnostics diagnostics;
   const auto restored = Simulation::restore(bench.simulation->snapshot(), options, diagnostics);
   ASSERT_FALSE(restored);
