@@ -156,6 +156,17 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
           found = {slot.topic.get(), std::string(target)}, active = awake;
       }
     }
+  if (const auto* const programs = call.simulation().programs_of(robot_of(target)); programs && !there)
+    for (const auto& program : *programs) {
+      if (!program->outputs) continue;
+      for (const Outputs::Input& input : std::as_const(*program->outputs).inputs()) {
+        known.push_back(input.topic->name().substr(1));
+        if (known.back() != target) continue;
+        there = true;
+        takes.emplace_back(input.topic->type());
+        if (!found.slot && is_of_type(*input.topic, type)) found = {input.topic.get(), known.back()};
+      }
+    }
   if (found.slot) return found;
   if (there) {
     std::sort(takes.begin(), takes.end());
@@ -164,7 +175,7 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
                  suggestion(type, takes)};
   }
   call.unknown_thing = true;
-  return Error{"there is no device '" + std::string(target.substr(0, 100)) + "' that takes commands",
+  return Error{"there is no device or topic '" + std::string(target.substr(0, 100)) + "' that takes commands",
                suggestion(target, known)};
 }
 

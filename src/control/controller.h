@@ -7,8 +7,8 @@
 ///   struct Wander {
 ///     using Spec = ...;  using State = ...;           // with field lists; State is saved and hashed
 ///     Spec spec; State state;
-///     Status init(const Description& robot);          // resolves names to handles; or, for topics of its own,
-///     Status init(const Description& robot, Outputs& out);
+///     Status init(const Description& robot);          // resolves names to handles; or, for topics of its own and those
+///     Status init(const Description& robot, Outputs& out);  // that clients publish for it (Outputs::subscribe),
 ///     void step(const Observation& obs, Command& cmd);
 ///     bool fits() const;                              // only where sizes or indices in State are trusted: asked after
 ///                                                     // it was restored from a file, false refuses the snapshot
@@ -38,7 +38,7 @@
 
 namespace sandlot {
 
-inline constexpr int controller_api_version = 4;
+inline constexpr int controller_api_version = 5;
 
 /// Handle of a device's message of type M, resolved once.
 template <class M>
@@ -107,9 +107,10 @@ struct View {
 /// What a controller sees in one step.
 class Observation {
  public:
+  /// @param inputs  what clients published for the controller (Outputs::subscribe)
   Observation(Time now, std::span<const TopicBase* const> topics, std::span<const std::uint64_t> seen,
-              Stream random)
-      : now_(now), topics_(topics), seen_(seen), random_(random) {}
+              Stream random, std::span<const Outputs::Input> inputs = {})
+      : now_(now), topics_(topics), seen_(seen), random_(random), inputs_(inputs) {}
   Time now() const { return now_; }
   template <class M>
   View<M> get(Reading<M> handle) const {
@@ -117,6 +118,15 @@ class Observation {
     const Topic<M>* const topic = topic_cast<M>(topics_[handle.topic]);
     SL_CHECK(topic != nullptr);
     return {topic->message, topic->stamp, topic->count > seen_[handle.topic], topic->count > 0};
+  }
+  /// The newest message that a client published; its stamp is when it came. Its numbers are finite, but for NaN in lists.
+  template <class M>
+  View<M> get(Subscription<M> handle) const {
+    SL_CHECK(handle.index < inputs_.size());
+    const Outputs::Input& input = inputs_[handle.index];
+    const Topic<M>* const topic = topic_cast<M>(input.topic.get());
+    SL_CHECK(topic != nullptr);
+    return {topic->message, topic->stamp, topic->count > input.seen, topic->count > 0};
   }
   /// For those that know a message by its type alone. @param reading  index in the description
   const TopicBase& topic(std::uint32_t reading) const {
@@ -131,6 +141,7 @@ class Observation {
   std::span<const TopicBase* const> topics_;
   std::span<const std::uint64_t> seen_;
   Stream random_;
+  std::span<const Outputs::Input> inputs_;
 };
 
 /// What a controller orders in one step; acts at the beginning of the next tick. What it publishes is there for others from

@@ -28,6 +28,18 @@ void Outputs::check(std::string_view name) {
       status_ = Error{"'" + topic + "' is published twice", "one of the two needs another name"};
 }
 
+void Outputs::check_input(std::string_view name, const std::string& topic) {
+  if (!status_) return;
+  if (!is_name(name)) {
+    status_ = Error{"'" + std::string(name.substr(0, 100)) + "' cannot be the name of a topic",
+                    "letters, digits and _"};
+    return;
+  }
+  for (const Input& each : inputs_)
+    if (each.topic->name() == topic)
+      status_ = Error{"'" + topic + "' is read twice", "subscribe once and keep the handle"};
+}
+
 void Outputs::commit(Time now) {
   for (Output& output : outputs_) {
     if (!std::exchange(output.fresh, false)) continue;
@@ -43,6 +55,11 @@ void Outputs::adopt(Outputs& before) {
       if (old.topic && old.topic->name() == output.topic->name() &&
           std::string_view(old.topic->type()) == output.topic->type())
         output.topic = std::move(old.topic);
+  for (Input& input : inputs_)
+    for (Input& old : before.inputs_)
+      if (old.topic && old.topic->name() == input.topic->name() &&
+          std::string_view(old.topic->type()) == input.topic->type())
+        input = std::move(old);
 }
 
 }  // namespace sandlot

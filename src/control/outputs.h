@@ -1,5 +1,5 @@
 #pragma once
-/// Topics that a program publishes.
+/// Topics that a program publishes, and those that others publish for it.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,7 +19,18 @@ struct Publication {
   std::uint32_t index = ~0u;
 };
 
-/// Topics that a program publishes, made while it begins: "/rover/estimator/estimate".
+/// Handle of a topic on which others publish for a program, made once.
+template <class M>
+struct Subscription {
+  std::uint32_t index = ~0u;
+};
+
+/// Most bytes of a message that comes on such a topic.
+inline constexpr std::size_t most_input_bytes = 64 * 1024;
+
+/// Topics that a program publishes, made while it begins: "/rover/estimator/estimate"; and those on which clients publish for
+/// it, "/rover/goal_pose". The latter are called after the robot (or the team) alone, as ROS has them: several of its programs
+/// may read one. What comes is a command like those to devices: judged, logged, replayed.
 ///
 /// Time   a message that a step publishes is held back until commit(): programs that step at the same time see only what
 ///        earlier steps published.
@@ -31,6 +42,11 @@ class Outputs {
     Owned<TopicBase> next;  ///< the message that is held back
     bool fresh = false;     ///< there is one
   };
+  struct Input {
+    Owned<TopicBase>
+        topic;  ///< `stamp` is when the newest message came; the message keeps the one that its sender gave
+    std::uint64_t seen = 0;  ///< count at the program's previous step
+  };
   /// @param path  of the program: "rover/estimator"
   explicit Outputs(std::string path) : path_(std::move(path)) {}
 
@@ -41,6 +57,15 @@ class Outputs {
     const std::string topic = "/" + path_ + "/" + std::string(name);
     outputs_.push_back({std::make_unique<Topic<M>>(topic), std::make_unique<Topic<M>>(topic)});
     return {static_cast<std::uint32_t>(outputs_.size() - 1)};
+  }
+  /// A topic that clients may publish; the program reads it by Observation::get(). Rules of names as above; one that is
+  /// called like a device or a program of the robot is refused when the program is made.
+  template <class M>
+  Subscription<M> subscribe(std::string_view name) {
+    const std::string topic = "/" + path_.substr(0, path_.find('/')) + "/" + std::string(name);
+    check_input(name, topic);
+    inputs_.push_back({std::make_unique<Topic<M>>(topic)});
+    return {static_cast<std::uint32_t>(inputs_.size() - 1)};
   }
   const Status& status() const { return status_; }
 
@@ -59,15 +84,19 @@ class Outputs {
   void adopt(Outputs& before);
 
   const std::string& path() const { return path_; }
-  bool empty() const { return outputs_.empty(); }
+  bool empty() const { return outputs_.empty() && inputs_.empty(); }
   std::span<const Output> all() const { return outputs_; }
   std::span<Output> all() { return outputs_; }
+  std::span<const Input> inputs() const { return inputs_; }
+  std::span<Input> inputs() { return inputs_; }
 
  private:
   void check(std::string_view name);
+  void check_input(std::string_view name, const std::string& topic);
 
   std::string path_;
   std::vector<Output> outputs_;
+  std::vector<Input> inputs_;
   Status status_;
 };
 

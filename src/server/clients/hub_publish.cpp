@@ -225,7 +225,8 @@ foxglove::Graph Hub::graph() const {
   for (const auto& [id, each] : channels_)
     if (each.kind != ChannelKind::device && each.owner == 0)
       published[each.info.topic].emplace_back("sandlot");
-  for (const Inventory::Slot& slot : inventory_->slots) subscribed[slot.name].push_back(slot.device);
+  for (const Inventory::Slot& slot : inventory_->slots)
+    if (!slot.of_program) subscribed[slot.name].push_back(slot.device);
   for (const Inventory::Program& program : inventory_->programs) {
     for (const std::string& topic : program.reads) subscribed[topic].push_back(program.path);
     for (const std::string& topic : program.orders) published[topic].push_back(program.path);

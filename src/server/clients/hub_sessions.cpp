@@ -208,6 +208,7 @@ void Hub::tell_step(ClientId id, const StepNotice& step) {
 /// Keeps a command for the end of the step. @return false: it is not for a program in lockstep
 bool Hub::collect(ClientId id, Client& client, const Publication& publication,
                   std::span<const std::byte> command) {
+  if (publication.target.slot->of_program) return false;  // no device's, so none of the step's orders
   const std::string_view address = publication.target.address;
   for (const ProgramLink& each : client.claim->links) {
     const bool of_team = first_part(each.program.path) == client.access.name &&
@@ -293,7 +294,7 @@ void Hub::stop_robots(ClientId id, Client& client) {
   for (const Inventory::Slot& slot : inventory_->slots) {
     const bool drives = slot.info->name == "geometry_msgs/msg/Twist" ||
                         slot.info->name == "geometry_msgs/msg/TwistStamped";
-    if (!drives || !slot.active || !client.access.may_command(slot.device)) continue;
+    if (!drives || slot.of_program || !slot.active || !client.access.may_command(slot.device)) continue;
     if (auto still = command_from_json(*slot.blank, "{}"))
       (void)session_.submit(CommandRequest{slot.device, slot.info->name, std::move(*still)},
                             {Source::Kind::robot, id});

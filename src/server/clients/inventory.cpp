@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/text.h"
 #include "messages/sensor_images.h"
@@ -57,6 +58,20 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
   const bool managed = std::count_if(all.begin(), all.end(), [](const auto& each) {
                          return each->instance.is_robot;
                        }) <= most_managed_robots;
+  // Several programs may read one topic.
+  const auto add_inputs = [&](const Simulation::ProgramEntry& program, std::vector<std::string>& reads) {
+    if (!program.outputs) return;
+    for (const Outputs::Input& input : std::as_const(*program.outputs).inputs()) {
+      const std::string& name = input.topic->name();
+      reads.push_back(name);
+      const bool known = std::any_of(out->slots.begin(), out->slots.end(), [&](const Inventory::Slot& slot) {
+        return slot.of_program && slot.name == name && slot.info == &input.topic->info();
+      });
+      auto& blank = blanks[input.topic->type()];
+      if (!blank) blank = input.topic->clone();
+      if (!known) out->slots.push_back({name, name.substr(1), "", true, &input.topic->info(), blank, true});
+    }
+  };
   for (const auto& entity : simulation.entities()) {
     if (entity->instance.is_robot) out->robots.push_back({entity->instance.name, entity->instance.team});
     for (const auto& device : entity->devices) {
@@ -95,6 +110,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
         add_name(
             simulation, *entity, entry, [](const Simulation::Device& d) -> const auto& { return d.commands; },
             made.orders);
+      add_inputs(*program, made.reads);
     }
   }
   for (const WorldElements::Part& part : simulation.elements().parts()) {
@@ -111,6 +127,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
     for (const auto& program : team.programs) {
       Inventory::Program& made = out->programs.emplace_back();
       made.path = program->path;
+      add_inputs(*program, made.reads);
       for (const auto& entity : simulation.entities()) {
         if (!entity->instance.is_robot || entity->instance.team != team.decl.name) continue;
         for (const Description& member : program->description->members) {

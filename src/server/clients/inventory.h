@@ -26,6 +26,7 @@ struct Inventory {
     bool active = false;
     const MessageInfo* info = nullptr;
     std::shared_ptr<const TopicBase> blank;  ///< an empty one of its type
+    bool of_program = false;  ///< a topic that programs read: `device` is its name, "rover/goal_pose"
   };
   struct Service {
     std::string name;    ///< "/rover/odometry/reset"

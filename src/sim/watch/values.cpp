@@ -112,6 +112,8 @@ bool NamedValue::resolve_programs(const Simulation::ProgramEntries& programs, st
     if (!program->outputs) continue;
     for (const Outputs::Output& output : program->outputs->all())
       if (std::string_view(output.topic->name()).substr(1) == thing) return resolve_topic(*output.topic);
+    for (const Outputs::Input& input : program->outputs->inputs())
+      if (std::string_view(input.topic->name()).substr(1) == thing) return resolve_topic(*input.topic);
   }
   return false;
 }
@@ -364,12 +366,14 @@ void list_programs(const Simulation::ProgramEntries& programs, Lister& lister) {
     if (lister.fresh(program->path + ".steps"))
       lister.one(program->path + ".steps", "1", "Control steps so far.", static_cast<double>(program->steps));
     if (!program->outputs) continue;
-    for (const Outputs::Output& output : program->outputs->all()) {
-      const std::string topic = output.topic->name().substr(1);
-      list_topic(*output.topic, lister.under(topic, "reading"));
+    const auto list = [&](const TopicBase& message) {
+      const std::string topic = message.name().substr(1);
+      list_topic(message, lister.under(topic, "reading"));
       if (lister.fresh(topic + ".count"))
-        lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(output.topic->count));
-    }
+        lister.one(topic + ".count", "1", "Messages so far.", static_cast<double>(message.count));
+    };
+    for (const Outputs::Output& output : program->outputs->all()) list(*output.topic);
+    for (const Outputs::Input& input : program->outputs->inputs()) list(*input.topic);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "physics/parallel.h"
 #include "sim/world/beings.h"
 #include "sim/world/device_keys.h"
+#include "sim/world/lookup.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot {
@@ -135,8 +136,9 @@ bool Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const 
   for (std::size_t i = 0; i < batch.size(); ++i) {
     ProgramEntry& entry = *batch[i];
     entry.command.clear();
-    seen[i].emplace(now, entry.topics, entry.seen,
-                    Stream(setup_.seed, entry.key, Purpose::controller, entry.steps));
+    seen[i].emplace(
+        now, entry.topics, entry.seen, Stream(setup_.seed, entry.key, Purpose::controller, entry.steps),
+        entry.outputs ? std::as_const(*entry.outputs).inputs() : std::span<const Outputs::Input>());
     turns[i] = {entry.controller.get(), &*seen[i], &entry.command};
   }
   if (step_all) step_all({turns.data(), batch.size()});
@@ -148,6 +150,8 @@ bool Programs::step_batch(std::span<ProgramEntry* const> batch, Time now) const 
     ++entry.steps;
     if (entry.schedule) plan_next_step(entry, now);
     for (std::size_t t = 0; t < entry.topics.size(); ++t) entry.seen[t] = entry.topics[t]->count;
+    if (entry.outputs)
+      for (Outputs::Input& input : entry.outputs->inputs()) input.seen = input.topic->count;
     news = news || entry.ended || entry.failure;
   }
   return news;
@@ -250,6 +254,34 @@ void Programs::deliver_orders(Entities entities, Time now, Time end, bool logged
   }
 }
 
+Status Programs::deliver(ProgramEntries& programs, const CommandRequest& command, Time now) {
+  const TopicBase* of_other_type = nullptr;
+  bool taken = false;
+  for (auto& program : programs) {
+    if (!program->outputs) continue;
+    for (Outputs::Input& input : program->outputs->inputs()) {
+      if (std::string_view(input.topic->name()).substr(1) != command.target) continue;
+      if (command.type != input.topic->type()) {
+        of_other_type = input.topic.get();
+        continue;
+      }
+      if (command.bytes.size() > most_input_bytes)
+        return Error{"a message on '" + input.topic->name() + "' has " +
+                         std::to_string(command.bytes.size()) + " bytes",
+                     "at most " + std::to_string(most_input_bytes)};
+      SL_TRY(input.topic->assign(command.bytes));
+      input.topic->stamp = now;
+      ++input.topic->count;
+      taken = true;
+    }
+  }
+  if (taken) return {};
+  if (of_other_type)
+    return Error{"'" + of_other_type->name() + "' takes " + of_other_type->type() + ", not " +
+                 command.type.substr(0, 200)};
+  return no_device(command.target);
+}
+
 /// Asks a device for a sample at the end of this tick.
 void Programs::deliver_sample(ProgramEntry& program, const Command::Order& order, Time end, bool logged,
                               std::uint64_t source, const FindDevice& find_device) {
@@ -305,8 +337,13 @@ void Programs::save(const ProgramEntry& program, ByteWriter& w) {
     write(w, program.wait->until);
     write(w, program.wait->reading);
   }
-  if (program.outputs)
+  if (program.outputs) {
     for (const Outputs::Output& output : program.outputs->all()) output.topic->save(w);
+    for (const Outputs::Input& input : program.outputs->inputs()) {
+      input.topic->save(w);
+      write(w, input.seen);
+    }
+  }
   program.program->save(w);
 }
 
@@ -356,11 +393,18 @@ bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
         (wait.waiting_for == Program::Waiting::message && wait.reading >= readings))
       return false;
   }
-  if (program.outputs)
-    for (Outputs::Output& output : program.outputs->all()) {
-      output.topic->load(r);
-      if (output.topic->stamp < Time{} || output.topic->stamp > now) return false;
+  const auto load_topic = [&](TopicBase& topic) {
+    topic.load(r);
+    return topic.stamp >= Time{} && topic.stamp <= now;
+  };
+  if (program.outputs) {
+    for (Outputs::Output& output : program.outputs->all())
+      if (!load_topic(*output.topic)) return false;
+    for (Outputs::Input& input : program.outputs->inputs()) {
+      if (!load_topic(*input.topic) || !check_command(input.topic->info(), input.topic->data())) return false;
+      read(r, input.seen);
     }
+  }
   program.program->load(r);
   return r.ok();
 }

@@ -80,6 +80,9 @@ class Programs {
   /// Delivers the orders of the latest step to the devices. @param end  of the tick that begins. @param logged  whether to log them
   /// @param find_device  by path; null: there is none
   void deliver_orders(Entities entities, Time now, Time end, bool logged, const FindDevice& find_device);
+  /// A message that came from outside for those of the programs that read the topic "rover/goal_pose" with that type: they see it
+  /// at their next step. Errors: none does, the bytes are no such message, or too many.
+  static Status deliver(ProgramEntries& programs, const CommandRequest& command, Time now);
   /// Steps the programs that are due. @param control_step  whether the tick is one of the run's control steps
   /// @return the first failure
   std::optional<Error> step(Entities entities, Time now, bool control_step);
@@ -132,6 +135,7 @@ class Programs {
                       Description& out) const;
   Result<Remade> remake(const Driven& driven, const ProgramEntries& old);
   void commit(ProgramEntries& old, Remade remade);
+  static Status check_inputs(const ProgramEntry& program, const Driven& driven, const ProgramEntries& before);
   void follow(ProgramEntry& program, const Driven& driven, const ProgramEntries& programs) const;
   void gather(Entities entities);
   bool is_due(const ProgramEntry& entry, Time now, bool control_step) const;

@@ -233,8 +233,25 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
   if (!outputs->empty()) {
     program->outputs = std::move(outputs);
     program->command.bind(program->outputs.get());
+    if (Status free = check_inputs(*program, driven, before); !free) return at(std::move(free.error()));
   }
   return program;
+}
+
+/// An input is called like a device of the robot would be: "/rover/goal_pose".
+Status Programs::check_inputs(const ProgramEntry& program, const Driven& driven,
+                              const ProgramEntries& before) {
+  for (const Outputs::Input& input : program.outputs->inputs()) {
+    const std::string_view path = std::string_view(input.topic->name()).substr(1);
+    bool taken = path == program.path;
+    for (const auto& other : before) taken = taken || other->path == path;
+    if (!driven.team) taken = taken || driven.robots.front()->find_device(path);
+    if (taken)
+      return Error{"'" + program.path + "' reads the topic '" + input.topic->name() +
+                       "', which is also the name of a device or program",
+                   "give that another name"};
+  }
+  return {};
 }
 
 /// Takes the program's own rate out of its keys. @return 0: the run's control steps

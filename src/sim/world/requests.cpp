@@ -41,6 +41,7 @@ struct Simulation::Processor {
   Result<Device*> device_named(const std::string& path);
   Status deliver(Device& device, std::string_view level, const CommandRequest& command);
   Status deliver(TopicBase& of_rule, const CommandRequest& command) const;
+  Status deliver_to_programs(const CommandRequest& command) const;
   Status set_errors(Entity* entity, std::string_view field, const Node& value);
   static Status set_property(model::PropertyDecl& property, const Node& value);
 };
@@ -75,7 +76,7 @@ Status Simulation::Processor::operator()(const CommandRequest& command) {
   TopicBase* const of_rule = device ? nullptr : sim.elements_.command_slot(target, command.type);
   Status status = device    ? deliver(*device, level, command)
                   : of_rule ? deliver(*of_rule, command)
-                            : no_device(command.target);
+                            : deliver_to_programs(command);
   if (!status) sim.commands_.count_refused();
   return status;
 }
@@ -99,6 +100,16 @@ Status Simulation::Processor::deliver(TopicBase& of_rule, const CommandRequest& 
   of_rule.stamp = sim.now_;
   ++of_rule.count;
   return {};
+}
+
+/// What clients publish for programs: those of a robot or of a team.
+Status Simulation::Processor::deliver_to_programs(const CommandRequest& command) const {
+  const std::string_view owner = first_part(command.target);
+  if (Entity* const entity = sim.find_entity(owner))
+    return Programs::deliver(entity->programs, command, sim.now_);
+  if (Team* const team = sim.programs_.find_team(owner))
+    return Programs::deliver(team->programs, command, sim.now_);
+  return no_device(command.target);
 }
 
 /// The target is a device, a program, a medium or rule, "sim" or an entity, looked for in this order.
