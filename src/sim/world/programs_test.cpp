@@ -110,13 +110,42 @@ struct Misnamed : Counter {
   }
 };
 
+/// Keeps what came on the topic "goal" of its robot.
+struct Goer {
+  using Spec = NoFields;
+  struct State {
+    double x = 0, came_s = 0, sent_s = 0;
+    std::uint32_t fresh = 0;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"x", "m", "Last goal."}, s.x);
+      visit(Field{"came", "s", "When it came."}, s.came_s);
+      visit(Field{"sent", "s", "The stamp its sender gave."}, s.sent_s);
+      visit(Field{"fresh", "1", "Fresh messages so far."}, s.fresh);
+    }
+  };
+  Spec spec;
+  State state;
+  Subscription<msg::PoseStamped> goal;
+  Status init(const Description&, Outputs& out) {
+    goal = out.subscribe<msg::PoseStamped>("goal");
+    return {};
+  }
+  void step(const Observation& obs, Command&) {
+    const auto view = obs.get(goal);
+    state.fresh += view.fresh;
+    if (!view.valid) return;
+    state = {view.message.pose.p.x, view.stamp.s(), view.message.header.stamp.s(), state.fresh};
+  }
+};
+
+constexpr ControllerKind goer = make_controller<Goer>({.name = "goer", .help = "Waits for goals."});
 constexpr ControllerKind counter = make_controller<Counter>({.name = "counter", .help = "Counts."});
 constexpr ControllerKind follower = make_controller<Follower>({.name = "follower", .help = "Follows."});
 constexpr ControllerKind sampler = make_controller<Sampler>({.name = "sampler", .help = "Samples."});
 constexpr ControllerKind misnamed = make_controller<Misnamed>({.name = "misnamed", .help = "Errs."});
 constexpr ControllerKind dice = make_controller<Dice>({.name = "dice", .help = "Throws."});
 constexpr ControllerKind driver = make_controller<Driver>({.name = "driver", .help = "Drives."});
-constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed, &dice, &driver};
+constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed, &dice, &driver, &goer};
 
 /// One rover on a plane with programs; ticks of 10 ms, control steps every 50 ms.
 model::Setup with_programs(std::vector<model::ControllerDecl> programs) {
@@ -250,6 +279,110 @@ TEST(ProgramTopics, LastWhenDevicesComeAndGo) {
   EXPECT_EQ(value(*simulation, "rover1/counter/count.data"), 5);
   EXPECT_EQ(value(*simulation, "rover1/first.seen"), 4);
   EXPECT_EQ(value(*simulation, "rover1/first.fresh"), 4);
+}
+
+CommandRequest goal_at(double x, double sent_s = 7) {
+  msg::PoseStamped message;
+  message.header.stamp = Time::from_s(sent_s);
+  message.header.frame_id = "map";
+  message.pose.p.x = x;
+  return {"rover1/goal", msg::PoseStamped::ros_type, command_bytes(message)};
+}
+
+model::Setup two_goers() {
+  return with_programs({{"a", "goer", Node::map(), {}}, {"b", "goer", Node::map(), {}}});
+}
+
+TEST(ProgramInputs, AreSeenAtTheNextStepByAllThatReadThem) {
+  const auto simulation = make(two_goers());
+  advance(*simulation, 7);
+  simulation->submit(goal_at(3));
+  advance(*simulation, 1);  // the tick from 0.07 s to 0.08 s
+  ASSERT_TRUE(simulation->outcomes().front().status) << simulation->outcomes().front().status.error().text();
+  EXPECT_EQ(value(*simulation, "rover1/goal.pose.position.x"), 3);
+  EXPECT_EQ(value(*simulation, "rover1/a.x"), 0) << "control steps are at 0.05 and 0.1 s";
+  advance(*simulation, 2);
+  for (const char* each : {"rover1/a.", "rover1/b."}) {
+    EXPECT_EQ(value(*simulation, std::string(each) + "x"), 3);
+    EXPECT_EQ(value(*simulation, std::string(each) + "came"), 0.07);
+    EXPECT_EQ(value(*simulation, std::string(each) + "sent"), 7) << "the sender's stamp stays";
+    EXPECT_EQ(value(*simulation, std::string(each) + "fresh"), 1);
+  }
+  advance(*simulation, 10);
+  EXPECT_EQ(value(*simulation, "rover1/a.fresh"), 1) << "it is new once";
+}
+
+TEST(ProgramInputs, AreStateBeforeAndAfterTheyAreRead) {
+  const auto whole = make(two_goers());
+  const std::uint64_t before = whole->state_hash();
+  advance(*whole, 11);
+  whole->submit(goal_at(2));
+  advance(*whole, 1);
+  const auto unread = restored(*whole);
+  ASSERT_TRUE(unread);
+  EXPECT_EQ(unread->state_hash(), whole->state_hash());
+  advance(*whole, 10), advance(*unread, 10);
+  EXPECT_EQ(value(*unread, "rover1/a.x"), 2);
+  EXPECT_EQ(unread->state_hash(), whole->state_hash());
+  const auto read = restored(*whole);
+  advance(*read, 10);
+  EXPECT_EQ(value(*read, "rover1/b.fresh"), 1);
+  // The same input gives the same hash, on several threads; another goal does not.
+  const auto run = [&](double x, int threads) {
+    const auto again = make(two_goers(), threads);
+    EXPECT_EQ(again->state_hash(), before);
+    advance(*again, 11);
+    again->repeat(goal_at(x), {});
+    advance(*again, 11);
+    return again->state_hash();
+  };
+  EXPECT_EQ(run(2, 1), unread->state_hash());
+  EXPECT_EQ(run(2, 2), unread->state_hash());
+  EXPECT_NE(run(2.5, 1), unread->state_hash());
+}
+
+TEST(ProgramInputs, StayWhenDevicesCome) {
+  const auto simulation = make(two_goers());
+  simulation->submit(goal_at(2));
+  advance(*simulation, 1);
+  model::DeviceDecl decl;
+  decl.name = "second";
+  decl.kind = "ground_truth";
+  simulation->submit(LoadDeviceRequest{"rover1", decl});
+  advance(*simulation, 9);
+  EXPECT_EQ(value(*simulation, "rover1/a.x"), 2);
+  EXPECT_EQ(value(*simulation, "rover1/b.fresh"), 1);
+}
+
+TEST(ProgramInputs, RefuseWhatIsNoSuchMessage) {
+  const auto simulation = make(two_goers());
+  const auto refusal = [&](CommandRequest request) {
+    simulation->submit(std::move(request));
+    advance(*simulation, 1);
+    const Status& status = simulation->outcomes().front().status;
+    return status ? "" : status.error().text();
+  };
+  const std::uint64_t refused = simulation->refused_commands();
+  CommandRequest twist = goal_at(1);
+  twist.type = msg::Twist::ros_type;
+  EXPECT_THAT(refusal(twist),
+              HasSubstr("'/rover1/goal' takes geometry_msgs/msg/PoseStamped, not geometry_msgs/msg/Twist"));
+  EXPECT_THAT(refusal(goal_at(NAN)), HasSubstr("not finite"));
+  CommandRequest cut = goal_at(1);
+  cut.bytes.pop_back();
+  EXPECT_THAT(refusal(cut), HasSubstr("the bytes are no geometry_msgs/msg/PoseStamped"));
+  CommandRequest other = goal_at(1);
+  other.target = "rover1/goals";
+  EXPECT_THAT(refusal(other), HasSubstr("there is no device 'rover1/goals'"));
+  msg::PoseStamped message;
+  message.header.frame_id.assign(most_input_bytes, 'x');
+  EXPECT_THAT(refusal({"rover1/goal", msg::PoseStamped::ros_type, command_bytes(message)}),
+              HasSubstr("at most 65536"));
+  EXPECT_EQ(simulation->refused_commands(), refused + 5);
+  EXPECT_EQ(value(*simulation, "rover1/goal.count"), 0);
+  const auto named = try_build(with_programs({{"goal", "goer", Node::map(), {}}}));
+  ASSERT_FALSE(named);
+  EXPECT_THAT(named.error().text(), HasSubstr("which is also the name of a device or program"));
 }
 
 TEST(ProgramTopics, ErrorsNameWhatIsWrong) {
