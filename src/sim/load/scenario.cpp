@@ -6,9 +6,13 @@
 
 #include "base/text.h"
 #include "builders/builder.h"
+#include "controllers/controllers.h"
+#include "controllers/grid_map.h"
 #include "files/resources.h"
+#include "files/text.h"
 #include "formats/kind.h"
 #include "formats/ros2_control/ros2_control.h"
+#include "navigation/maps/map_file.h"
 #include "physics/engine.h"
 #include "programs/programs.h"
 #include "sim/load/attach.h"
@@ -41,7 +45,10 @@ class ScenarioLoader {
     SL_TRY(add_plugins());
     SL_TRY(add_things());  // before the robots, which find their places between them
     SL_TRY(add_robots());
-    for (model::TeamDecl& team : setup_.teams) set_program_folders(team.controllers);
+    for (model::TeamDecl& team : setup_.teams) {
+      set_program_folders(team.controllers);
+      SL_TRY(embed_maps(team.controllers));
+    }
     return std::move(setup_);
   }
 
@@ -90,6 +97,7 @@ class ScenarioLoader {
       SL_ASSIGN(model::Instance robot, instance_of(group, "/robots/" + std::to_string(i)));
       robot.is_robot = true;
       set_program_folders(robot.controllers);
+      SL_TRY(embed_maps(robot.controllers));
       SL_TRY(attach_modules(robot, group));
       SL_TRY(add_joint_controllers(robot, group));
       SL_TRY(merge_devices(robot, group.devices));
@@ -121,6 +129,47 @@ class ScenarioLoader {
       const fs::path folder = fs::absolute(fs::path(beside.empty() ? "." : beside) / written);
       config.set("folder", Node::scalar(folder.lexically_normal().string(), place));
     }
+  }
+
+  /// Controllers open no files: what `map` names is put into `map_data` (controllers/grid_map.h), which snapshots carry.
+  Status embed_maps(SharedList<model::ControllerDecl>& controllers) {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+      const model::ControllerDecl& decl = controllers.get()[i];
+      const auto kinds = sandlot::controller_kinds();
+      const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                     [&](const ControllerKind* each) { return decl.kind == each->name; });
+      const Node* const given = decl.config.is_map() ? decl.config.find("map") : nullptr;
+      if (kind == kinds.end() || !given || given->text().empty() || decl.config.find("map_data")) continue;
+      const std::vector<FieldInfo> fields = (*kind)->describe();
+      if (std::none_of(fields.begin(), fields.end(), [](const FieldInfo& f) { return f.path == "map_data"; }))
+        continue;
+      const Place place = given->place();
+      SL_ASSIGN(std::string text, map_data_of(given->text(), place));
+      controllers.edit()[i].config.set("map_data", Node::scalar(std::move(text), place));
+    }
+    return {};
+  }
+
+  /// The map behind a name in the scenario, as text; each file is read once.
+  Result<std::string> map_data_of(const std::string& written, const Place& place) {
+    constexpr std::size_t most_yaml = 64 * 1024, most_picture = std::size_t{256} << 20;
+    const std::string file = beside(folder_at(place), written);
+    if (const auto known = maps_.find(file); known != maps_.end()) return known->second;
+    const auto at = [](Error error, const Place& there) {
+      if (!error.place.file) error.place = there;
+      return error;
+    };
+    auto text = read_text_file(file, most_yaml);
+    if (!text) return at(std::move(text.error()), place);
+    if (Status whole = check_text(*text, file); !whole) return at(std::move(whole.error()), place);
+    auto header = navigation::parse_map_header(*text, diagnostics_, file);
+    if (!header) return at(std::move(header.error()), place_in(file));
+    const std::string image = beside(folder_of(file), header->image);
+    auto picture = read_text_file(image, most_picture);
+    if (!picture) return at(std::move(picture.error()), place_in(file));
+    auto map = navigation::decode_map(*header, *picture, image);
+    if (!map) return at(std::move(map.error()), place_in(image));
+    return maps_.emplace(file, controllers::map_text(*map)).first->second;
   }
 
   /// One instance of a group, at the model's own pose: what the scenario declares of it, with the model of its file.
@@ -230,6 +279,7 @@ class ScenarioLoader {
   Diagnostics& diagnostics_;
   model::Setup setup_;
   std::map<std::string, model::Instance> loaded_;  ///< by file
+  std::map<std::string, std::string> maps_;        ///< texts of map files by path
 };
 
 }  // namespace
