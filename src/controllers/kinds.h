@@ -12,6 +12,7 @@
   controller(forager)                   \
   controller(formation)                 \
   controller(four_wheel_steer)          \
+  controller(localise)                  \
   controller(odometry_estimator)        \
   controller(playback)                  \
   controller(predator)                  \
