@@ -126,14 +126,16 @@ std::string find_program(const std::string& name, const std::string& folder, std
   return "";
 }
 
-std::string text_of_exit(int status) {
-  const auto by_signal = [](int number) {
-    return "was ended by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
-  };
-  if (WIFSIGNALED(status)) return by_signal(WTERMSIG(status));
+int signal_of_exit(int status) {
+  if (WIFSIGNALED(status)) return WTERMSIG(status);
   const int code = WEXITSTATUS(status);
-  // As shells and bubblewrap pass it on.
-  return code > 128 && code < 128 + NSIG ? by_signal(code - 128) : "ended with code " + std::to_string(code);
+  return code > 128 && code < 128 + NSIG ? code - 128 : 0;
+}
+
+std::string text_of_exit(int status) {
+  if (const int number = signal_of_exit(status))
+    return "was ended by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
+  return "ended with code " + std::to_string(WEXITSTATUS(status));
 }
 
 Result<Child> Child::start(const Launch& launch) {

@@ -80,6 +80,8 @@ class Child {
   std::string gone_;
 };
 
+/// The signal that ended a process, by its status of waitpid(), also as shells and bubblewrap pass it on; 0: none did.
+int signal_of_exit(int status);
 /// Text of a status of waitpid(): "ended with code 1".
 std::string text_of_exit(int status);
 /// The file that a command runs; "": there is none. @param path  folders with ':' between them

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <filesystem>
 #include <future>
 #include <map>
@@ -68,6 +69,12 @@ FileTimes file_times(const programs::ProgramLaunch& program) {
   return out;
 }
 
+/// Whether a process ended by a fault of its own, by its status of waitpid().
+bool is_crash(int status) {
+  static const std::set<int> faults{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
+  return faults.contains(programs::signal_of_exit(status));
+}
+
 /// A program and its process. Of the watching thread, but for what never changes.
 struct Program {
   std::string path;  ///< "red1/controller"
@@ -97,7 +104,8 @@ struct Program {
   void read_output(Clock::time_point now);
   void write_line(const std::string& line, bool is_error);
   void measure(Clock::time_point now);
-  void end(const std::string& how, bool success, bool expected, Clock::time_point now);
+  void end(const std::string& how, bool success, Clock::time_point now);
+  std::string text_of_end(const std::string& how) const;
   void watch(bool expected, Clock::time_point now);
 };
 
@@ -150,7 +158,7 @@ void Program::measure(Clock::time_point now) {
     child.reset();
     return end(fmt::format("was ended: it had {} of memory, of {}",
                            megabytes(static_cast<double>(used.memory_bytes)), megabytes(budget.memory_bytes)),
-               false, false, now);
+               false, now);
   }
   // Again and again while it lasts: processes may have come meanwhile.
   if (balance_s < 0) programs::halt(child->process(), true);
@@ -158,10 +166,11 @@ void Program::measure(Clock::time_point now) {
   halted = balance_s < 0;
 }
 
+std::string Program::text_of_end(const std::string& how) const { return "program '" + path + "' " + how; }
+
 /// The process is no more: it is started again, or the run no longer waits for it.
-void Program::end(const std::string& how, bool success, bool expected, Clock::time_point now) {
-  if (expected) return;
-  std::string text = "program '" + path + "' " + how;
+void Program::end(const std::string& how, bool success, Clock::time_point now) {
+  std::string text = text_of_end(how);
   if (!success && !last_note.empty()) text += "; last line of its standard error: " + last_note;
   const bool again = rule == Restart::on_exit || (rule == Restart::on_failure && !success);
   if (seconds_since(started, now) > long_life_s) short_lives = 0;
@@ -183,7 +192,9 @@ void Program::watch(bool expected, Clock::time_point now) {
     if (const auto status = child->exit_status()) {
       read_output(now);
       child.reset();
-      end(programs::text_of_exit(*status), *status == 0, expected, now);
+      // One that crashed just before the run ended is found only now.
+      if (!expected) end(programs::text_of_exit(*status), *status == 0, now);
+      else if (is_crash(*status)) log::warning(text_of_end(programs::text_of_exit(*status)));
     } else {
       measure(now);
     }
