@@ -51,13 +51,14 @@ PendingRequest request_of(const std::string& robot, const char* service, const A
   return {std::move(made), std::move(text)};
 }
 
-CommandResult list_controllers(CommandCall& call) {
+/// @param words  a robot, or nothing: all
+CommandResult list_controllers(CommandCall& call, std::span<const std::string> words, bool as_json) {
   std::vector<const Simulation::Entity*> robots;
-  if (call.words.empty()) {
+  if (words.empty()) {
     for (const auto& entity : call.simulation().entities())
       if (entity->instance.is_robot) robots.push_back(entity.get());
   } else {
-    SL_ASSIGN(robots, match_things(call, call.words.front()));
+    SL_ASSIGN(robots, match_things(call, words.front()));
   }
   std::string text, json_text;
   JsonWriter json(json_text);
@@ -79,7 +80,7 @@ CommandResult list_controllers(CommandCall& call) {
         text += (i ? ", " : "  commands ") + each.claims[i];
     }
   json.end_list();
-  if (call.json) return std::optional(std::move(json_text));
+  if (as_json) return std::optional(std::move(json_text));
   return std::optional(text.empty() ? std::string("there are none") : text);
 }
 
@@ -134,14 +135,16 @@ CommandResult switch_over(CommandCall& call) {
 CommandResult cmd_controllers(CommandCall& call) {
   const bool acts_on = call.words.size() > 1 && is_act(call.words.front());
   if (!acts_on) {
-    if (call.words.size() > 1)
-      return Error{
-          "'" + call.words.front().substr(0, 60) + "' is nothing that is done to controllers",
-          suggestion(call.words.front(), std::vector<std::string>(std::begin(acts), std::end(acts)))};
-    if (!call.words.empty() && is_act(call.words.front()) &&
-        !call.simulation().find_entity(call.words.front()))
-      return Error{"'controllers " + call.words.front() + "' needs a controller", "ROBOT/CONTROLLER"};
-    return list_controllers(call);
+    // The keys of `load` are taken letter by letter, so the flag comes here as a word.
+    const bool as_json = call.json || (!call.words.empty() && call.words.back() == "--json");
+    const std::span<const std::string> words = call.words.first(call.words.size() -
+                                                                (as_json && !call.json ? 1 : 0));
+    if (words.size() > 1)
+      return Error{"'" + words.front().substr(0, 60) + "' is nothing that is done to controllers",
+                   suggestion(words.front(), std::vector<std::string>(std::begin(acts), std::end(acts)))};
+    if (!words.empty() && is_act(words.front()) && !call.simulation().find_entity(words.front()))
+      return Error{"'controllers " + words.front() + "' needs a controller", "ROBOT/CONTROLLER"};
+    return list_controllers(call, words, as_json);
   }
   if (!call.caller.may_steer) return Error{"this is for those who may steer; you may watch"};
   const std::string& act = call.words.front();

@@ -16,7 +16,7 @@ struct ChainConnection {
   std::vector<std::string> reference_interfaces;
   static void fields(auto& s, auto&& visit) {
     visit(Field{"name", "", "Name of the controller that takes the output."}, s.name);
-    visit(Field{"reference_interfaces", "", "Its inputs."}, s.reference_interfaces);
+    visit(Field{"reference_interfaces", "", "Inputs of the other controller."}, s.reference_interfaces);
   }
 };
 

@@ -34,7 +34,7 @@ TEST(Server, SaysWhoItIsAndWhatThereIs) {
          {"/tf", "/tf_static", "/clock", "/rosout", "/sandlot/world", "/sandlot/poses", "/sandlot/status",
           "/sandlot/commands", "/sandlot/contacts", "/sandlot/deliveries", "/sandlot/batteries"})
       EXPECT_EQ(viewer.channels.count(topic), 1u) << topic;
-    EXPECT_EQ(viewer.services.size(), 28u);
+    EXPECT_EQ(viewer.services.size(), 33u);
   }
 }
 

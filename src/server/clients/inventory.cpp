@@ -96,7 +96,7 @@ std::shared_ptr<const Inventory> take_inventory(const Simulation& simulation, st
         out->services.push_back({"/" + device->path + "/" + service.name, device->path, &service});
     if (entity->instance.is_robot && managed) {
       const std::string manager = entity->instance.name + "/" + std::string(controller_manager_name);
-      for (const DeviceService& service : Simulation::controller_services())
+      for (const DeviceService& service : controller_services())
         out->services.push_back({"/" + manager + "/" + service.name, manager, &service});
     }
     for (const auto& program : entity->programs) {

@@ -4,18 +4,16 @@
 #include <set>
 
 #include "base/text.h"
-#include "devices/device_service.h"
 #include "files/yaml.h"
 #include "formats/ros2_control/ros2_control.h"
-#include "messages/controller_manager_msgs.h"
 #include "model/model_bytes.h"
 #include "sim/load/device_settings.h"
+#include "sim/world/controller_manager.h"
 #include "sim/world/lookup.h"
 
 namespace sandlot {
 namespace {
 
-namespace cm = msg::controller_manager;
 using Entity = Simulation::Entity;
 using Device = Simulation::Device;
 using State = ControllerView::State;
@@ -128,35 +126,9 @@ std::vector<ControllerView> controllers_of(const Simulation& simulation, const E
 
 // ------------------------------------------------------------------------------------------------------ the manager
 
-/// One call of a robot's controller manager. Each operation checks everything first.
-struct Simulation::ControllerManager {
-  Simulation& sim;
-  Entity& robot;
+std::span<const DeviceService> controller_services() { return Simulation::ControllerManager::services(); }
 
-  Result<cm::ListControllers::Response> list(const cm::ListControllers::Request& asked,
-                                             const Context& context);
-  Result<cm::LoadController::Response> load(const cm::LoadController::Request& asked, const Context& context);
-  Result<cm::ConfigureController::Response> configure(const cm::ConfigureController::Request& asked,
-                                                      const Context& context);
-  Result<cm::SwitchController::Response> switch_over(const cm::SwitchController::Request& asked,
-                                                     const Context& context);
-  Result<cm::UnloadController::Response> unload(const cm::UnloadController::Request& asked,
-                                                const Context& context);
-
- private:
-  Status check_name(const std::string& name) const;
-  Result<LoadedController> read(const cm::LoadController::Request& asked) const;
-  Status check_switch(const std::vector<ControllerView>& all, const std::vector<std::string>& start,
-                      const std::vector<std::string>& stop) const;
-  Status check_claims(const std::vector<ControllerView>& all, const std::vector<std::string>& start,
-                      const std::vector<std::string>& stop) const;
-  void set_active(const ControllerView& view, bool active);
-  Status add_devices(LoadedController& loaded);
-  Status take_devices(const std::vector<std::string>& names);
-  void changed();
-};
-
-std::span<const DeviceService> Simulation::controller_services() {
+std::span<const DeviceService> Simulation::ControllerManager::services() {
   using M = ControllerManager;
   static constexpr DeviceService services[] = {
       device_service<M, cm::ListControllers, &M::list>("list_controllers",
@@ -172,19 +144,19 @@ std::span<const DeviceService> Simulation::controller_services() {
   return services;
 }
 
-Simulation::Entity* Simulation::managed_robot(std::string_view path) {
+Simulation::Entity* Simulation::ControllerManager::robot_at(Simulation& sim, std::string_view path) {
   const std::string_view owner = first_part(path);
   if (owner.size() == path.size() || path.substr(owner.size() + 1) != controller_manager_name) return nullptr;
-  Entity* const robot = find_entity(owner);
+  Entity* const robot = sim.find_entity(owner);
   return robot && robot->instance.is_robot && !robot->find_device(path) ? robot : nullptr;
 }
 
-Status Simulation::call_controllers(Entity& robot, const CallRequest& request,
-                                    std::vector<std::byte>& response) {
+Status Simulation::ControllerManager::answer(Simulation& sim, Entity& robot, const CallRequest& request,
+                                             std::vector<std::byte>& response) {
   std::vector<std::string> known;
-  ControllerManager manager{*this, robot};
-  for (const DeviceService& each : controller_services()) {
-    if (request.service == each.name) return each.call(&manager, request.bytes, response, context());
+  ControllerManager manager{sim, robot};
+  for (const DeviceService& each : services()) {
+    if (request.service == each.name) return each.call(&manager, request.bytes, response, sim.context());
     known.emplace_back(each.name);
   }
   return Error{"a controller manager offers no service '" + request.service.substr(0, 60) + "'",
@@ -232,7 +204,7 @@ Status Simulation::ControllerManager::check_name(const std::string& name) const 
 }
 
 /// What a request declares, with all that can be checked of it without making it.
-Result<Simulation::LoadedController> Simulation::ControllerManager::read(
+Result<Simulation::LoadedController> Simulation::ControllerManager::declared(
     const cm::LoadController::Request& asked) const {
   const std::string file = asked.file.empty() ? "parameters" : asked.file;
   SL_ASSIGN(Node root, parse_yaml(asked.parameters, file));
@@ -297,7 +269,7 @@ Result<Simulation::LoadedController> Simulation::ControllerManager::read(
 Result<cm::LoadController::Response> Simulation::ControllerManager::load(
     const cm::LoadController::Request& asked, const Context&) {
   SL_TRY(check_name(asked.name));
-  SL_ASSIGN(LoadedController loaded, read(asked));
+  SL_ASSIGN(LoadedController loaded, declared(asked));
   for (const model::DeviceDecl& device : loaded.devices)
     if (device_of(robot, device.name))
       return Error{"robot '" + robot.instance.name + "' has a device '" + device.name + "' already",
@@ -511,8 +483,8 @@ Result<cm::UnloadController::Response> Simulation::ControllerManager::unload(
 
 // ------------------------------------------------------------------------------------------------------------- State
 
-void Simulation::save_loaded(ByteWriter& w) const {
-  for (const auto& entity : entities_) {
+void Simulation::ControllerManager::save_loaded(const Simulation& sim, ByteWriter& w) {
+  for (const auto& entity : sim.entities_) {
     if (entity->loaded.empty()) continue;
     write(w, entity->instance.name);
     write(w, static_cast<std::uint32_t>(entity->loaded.size()));
@@ -526,12 +498,12 @@ void Simulation::save_loaded(ByteWriter& w) const {
   }
 }
 
-bool Simulation::load_loaded(ByteReader& r) {
+bool Simulation::ControllerManager::load_loaded(Simulation& sim, ByteReader& r) {
   while (r.ok() && r.remaining() > 0) {
     std::string name;
     std::uint32_t count = 0;
     read(r, name), read(r, count);
-    Entity* const entity = r.ok() ? find_entity(name) : nullptr;
+    Entity* const entity = r.ok() ? sim.find_entity(name) : nullptr;
     if (!entity || !entity->instance.is_robot || !entity->loaded.empty() || count > most_controllers)
       return false;
     for (std::uint32_t i = 0; i < count; ++i) {

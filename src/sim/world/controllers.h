@@ -42,6 +42,9 @@ struct ControllerView {
 };
 const char* name_of(ControllerView::State state);
 
+/// What a robot's controller manager answers.
+std::span<const DeviceService> controller_services();
+
 /// Programs, then joint controllers, then those that are not configured.
 std::vector<ControllerView> controllers_of(const Simulation& simulation, const Simulation::Entity& robot);
 

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "noise/chain.h"
+#include "sim/world/controller_manager.h"
 #include "sim/world/faults.h"
 #include "sim/world/lookup.h"
 #include "sim/world/simulation.h"
@@ -170,8 +171,8 @@ Status Simulation::Processor::operator()(const SampleRequest& request) {
 
 /// A device that is dead or stuck answers nothing. A robot's controller manager is called as if it were one of its devices.
 Status Simulation::Processor::operator()(const CallRequest& request) {
-  if (Entity* const robot = sim.managed_robot(request.device))
-    return sim.call_controllers(*robot, request, response);
+  if (Entity* const robot = ControllerManager::robot_at(sim, request.device))
+    return ControllerManager::answer(sim, *robot, request, response);
   SL_ASSIGN(Device* const device, device_named(request.device));
   return sim.devices_.call(*device, request.service, request.bytes, response, sim.context());
 }

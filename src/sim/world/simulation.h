@@ -205,8 +205,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   std::span<const ControllerKind* const> controller_kinds() const { return programs_.kinds(); }
   /// Those that a program may be of besides.
   std::span<const ProgramKind* const> program_kinds() const;
-  /// What a robot's controller manager answers (sim/world/controllers.h).
-  static std::span<const DeviceService> controller_services();
+  struct ControllerManager;  // sim/world/controller_manager.h
 
  private:
   friend class Publisher;  // reads everything, writes nothing
@@ -248,13 +247,6 @@ class Simulation final : public SimulationParts, public TopicFinder {
   struct Processor;
   std::string solid_at(const Entity& entity, const Pose& X_WM) const;
   Status process(Request& request, const Source& source, std::vector<std::byte>& response);
-
-  // controllers.cpp
-  struct ControllerManager;
-  Entity* managed_robot(std::string_view path);
-  Status call_controllers(Entity& robot, const CallRequest& request, std::vector<std::byte>& response);
-  void save_loaded(ByteWriter& w) const;
-  bool load_loaded(ByteReader& r);
 
   // state.cpp
   template <class Visit>

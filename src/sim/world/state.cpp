@@ -10,6 +10,7 @@
 #include "model/model_bytes.h"
 #include "sim/load/plugin.h"
 #include "sim/watch/monitor.h"
+#include "sim/world/controller_manager.h"
 #include "sim/world/faults.h"
 #include "sim/world/simulation.h"
 #include "sim/world/snapshot.h"
@@ -120,7 +121,7 @@ void Simulation::save_run(ByteWriter& w) const {
         write(block, device->faults->order.factor);
       }
   });
-  if (loaded) write_block(w, [&](ByteWriter& block) { save_loaded(block); });
+  if (loaded) write_block(w, [&](ByteWriter& block) { ControllerManager::save_loaded(*this, block); });
 }
 
 bool Simulation::errors_scaled() const {
@@ -173,7 +174,7 @@ bool Simulation::load_run(ByteReader& r) {
   if (!r.ok() || !failures.ok()) return false;
   if (r.remaining() == 0) return true;
   ByteReader loaded = read_block(r);
-  return r.ok() && load_loaded(loaded);
+  return r.ok() && ControllerManager::load_loaded(*this, loaded);
 }
 
 /// Calls visit(path, key, fill) for each part of the State after the run's own: media, rules, then entities in creation order.
