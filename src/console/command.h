@@ -53,7 +53,7 @@ enum class Argument : std::uint8_t {
   link,            ///< of the thing before it
   parameter,       ///< its address
   value,           ///< its address
-  target,          ///< a device that takes commands
+  target,          ///< a device that takes commands, or a topic that programs read
   type,            ///< the message type that the target before it takes
   model,
   off,

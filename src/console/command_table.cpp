@@ -51,7 +51,8 @@ const std::vector<BuiltinCommand>& table() {
        .submits = true},
       {.name = "command",
        .usage = "TARGET TYPE JSON",
-       .help = "Sends one message to a device (command rover/drive Twist {\"linear\": {\"x\": 0.5}}).",
+       .help = "Sends one message to a device, or on a topic that programs read (command rover/drive Twist "
+               "{\"linear\": {\"x\": 0.5}}).",
        .steers = true,
        .min_words = 3,
        .arguments = {A::target, A::type, A::none},

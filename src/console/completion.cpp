@@ -1,5 +1,6 @@
 /// Completion of the last word of a line.
 #include <algorithm>
+#include <utility>
 
 #include "base/text.h"
 #include "console/command.h"
@@ -81,6 +82,14 @@ std::string slash_if_devices(const Entity& entity) {
   return entity.devices.empty() && entity.programs.empty() ? "" : "/";
 }
 
+/// Topics that clients publish for the programs of a robot or team.
+template <class F>
+void each_input(const Simulation::ProgramEntries& programs, F take) {
+  for (const auto& program : programs)
+    if (program->outputs)
+      for (const Outputs::Input& input : std::as_const(*program->outputs).inputs()) take(*input.topic);
+}
+
 void complete_values(const Simulation& simulation, Candidates& out) {
   if (robot_of(out.prefix()).size() == out.prefix().size()) {
     out.add("sim.");
@@ -127,7 +136,12 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
       complete_addresses(simulation, out, slash_if_devices, [&](const Entity& entity) {
         for (const auto& device : entity.devices)
           if (argument == Argument::device || !device->commands.empty()) out.add(device->path);
+        if (argument == Argument::target)
+          each_input(entity.programs, [&](const TopicBase& topic) { out.add(topic.name().substr(1)); });
       });
+      if (argument == Argument::target)
+        for (const Simulation::Team& team : simulation.teams())
+          each_input(team.programs, [&](const TopicBase& topic) { out.add(topic.name().substr(1)); });
       break;
     case Argument::level:
       if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
@@ -169,6 +183,11 @@ void complete_argument(const Simulation& simulation, const Console::Options& opt
     case Argument::type:
       if (const Simulation::Device* const device = before.empty() ? nullptr : device_named(before.front()))
         for (const Simulation::Slot& slot : device->commands) out.add(slot.topic->type());
+      if (const auto* const programs = before.empty() ? nullptr
+                                                      : simulation.programs_of(robot_of(before.front())))
+        each_input(*programs, [&](const TopicBase& topic) {
+          if (topic.name().substr(1) == before.front()) out.add(topic.type());
+        });
       break;
     case Argument::model:
       for (const char* each : {"box", "sphere", "cylinder", "copy"}) out.add(each);

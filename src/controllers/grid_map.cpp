@@ -86,7 +86,7 @@ Result<GridMap> map_of(const MapKeys& keys) {
   if (!keys.map_data.empty()) return read_map_text(keys.map_data);
   if (keys.map.empty()) return Error{"there is no map", "map: a YAML file of map_server"};
   return Error{"the map '" + keys.map.substr(0, 200) + "' was not read",
-               "load the scenario by sim/load, or give map_data"};
+               "declare the controller in the scenario: one that comes later needs map_data"};
 }
 
 }  // namespace sandlot::controllers

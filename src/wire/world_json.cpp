@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <set>
+#include <utility>
 
 #include "base/field_json.h"
 #include "base/text.h"
@@ -210,6 +211,14 @@ void write_programs(JsonWriter& w, const Simulation::ProgramEntries& programs) {
         w.key("path").text(program->path);
         w.key("kind").text(program->decl.kind);
         if (program->inactive) w.key("inactive").flag(true);
+        if (!program->outputs || std::as_const(*program->outputs).inputs().empty()) return;
+        w.key("inputs").list([&] {
+          for (const Outputs::Input& input : std::as_const(*program->outputs).inputs())
+            w.object([&] {
+              w.key("name").text(input.topic->name());
+              w.key("type").text(input.topic->type());
+            });
+        });
       });
   });
 }

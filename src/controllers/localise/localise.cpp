@@ -88,7 +88,7 @@ void Localiser::step(const Observation& obs, Command& cmd) {
     }
   }
   const amcl::Estimate& estimate = state.filter.estimate;
-  if (!estimate.known) return;
+  if (!estimate.known || (obs.now() - odometry.stamp).s() > spec.odometry_age_s) return;
   const Pose2 X_OB = at(obs.now());
   const Pose2 X_MB = amcl::pose_at(state.filter, X_OB);
   pose_out_.header.stamp = obs.now();

@@ -4,13 +4,15 @@
 /// Reads      `laser`, a LaserScan, and `odometry`, an Odometry of wheels or of a program; the topic /ROBOT/initialpose,
 ///            geometry_msgs/PoseWithCovarianceStamped in `frame`, as RViz and Foxglove publish it.
 /// Publishes  `amcl_pose`, geometry_msgs/PoseWithCovarianceStamped in `frame`, at each step once the pose is known: carried on by the
-///            odometry since the last scan used, whose covariance it has. `map_to_odom`, geometry_msgs/TransformStamped, with it.
-///            `particle_cloud`, geometry_msgs/PoseArray, after each scan used.
+///            odometry since the last scan used, whose covariance it has; none while the odometry is older than `odometry_age`.
+///            `map_to_odom`, geometry_msgs/TransformStamped, with it. `particle_cloud`, geometry_msgs/PoseArray, after each scan
+///            used.
 /// Begins     as `begin` says: all over the map (global), at `x`, `y`, `yaw` (pose), or with the first initialpose (topic).
 /// Method, errors, limits   navigation/localisation/amcl.h, with the keys of Nav2's AMCL. What became of the scans stands in the
 ///            state, `localise.filter.counts`. No ground truth is read.
 /// Random     numbers are keyed by the run's seed and the controller's path.
-/// Limits     of several scans in a control step the newest alone. Between odometry and scan the robot is taken to keep its velocity.
+/// Limits     an initialpose counts from when it came, whatever its stamp; of several scans in a control step the newest alone
+///            counts. Between odometry and scan the robot is taken to keep its velocity.
 /// Cost       amcl.h's, at scans after a motion; memory of the map, 8 bytes a cell.
 #include <optional>
 

@@ -403,6 +403,7 @@ bool Programs::load(ProgramEntry& program, ByteReader& r, Time now) {
     for (Outputs::Input& input : program.outputs->inputs()) {
       if (!load_topic(*input.topic) || !check_command(input.topic->info(), input.topic->data())) return false;
       read(r, input.seen);
+      if (input.seen > input.topic->count) return false;
     }
   }
   program.program->load(r);

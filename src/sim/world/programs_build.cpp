@@ -233,23 +233,41 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
   if (!outputs->empty()) {
     program->outputs = std::move(outputs);
     program->command.bind(program->outputs.get());
-    if (Status free = check_inputs(*program, driven, before); !free) return at(std::move(free.error()));
   }
+  if (Status free = check_inputs(*program, driven, before); !free) return at(std::move(free.error()));
   return program;
 }
 
-/// An input is called like a device of the robot would be: "/rover/goal_pose".
+/// An input is called like a device of the robot would be, "/rover/goal_pose": no device and no program may have its name, and
+/// all that read it take one type.
 Status Programs::check_inputs(const ProgramEntry& program, const Driven& driven,
                               const ProgramEntries& before) {
-  for (const Outputs::Input& input : program.outputs->inputs()) {
-    const std::string_view path = std::string_view(input.topic->name()).substr(1);
-    bool taken = path == program.path;
-    for (const auto& other : before) taken = taken || other->path == path;
-    if (!driven.team) taken = taken || driven.robots.front()->find_device(path);
-    if (taken)
-      return Error{"'" + program.path + "' reads the topic '" + input.topic->name() +
-                       "', which is also the name of a device or program",
-                   "give that another name"};
+  const auto inputs_of = [](const ProgramEntry& each) {
+    return each.outputs ? std::as_const(*each.outputs).inputs() : std::span<const Outputs::Input>();
+  };
+  const auto path_of = [](const Outputs::Input& input) {
+    return std::string_view(input.topic->name()).substr(1);
+  };
+  const auto named_twice = [](const ProgramEntry& reader, const Outputs::Input& input) {
+    return Error{"'" + reader.path + "' reads the topic '" + input.topic->name() +
+                     "', which is also the name of a device or program",
+                 "give that another name"};
+  };
+  for (const Outputs::Input& input : inputs_of(program))
+    if (path_of(input) == program.path ||
+        (!driven.team && driven.robots.front()->find_device(path_of(input))))
+      return named_twice(program, input);
+  for (const auto& other : before) {
+    for (const Outputs::Input& theirs : inputs_of(*other))
+      if (path_of(theirs) == program.path) return named_twice(*other, theirs);
+    for (const Outputs::Input& input : inputs_of(program)) {
+      if (path_of(input) == other->path) return named_twice(program, input);
+      for (const Outputs::Input& theirs : inputs_of(*other))
+        if (theirs.topic->name() == input.topic->name() && &theirs.topic->info() != &input.topic->info())
+          return Error{"'" + program.path + "' reads the topic '" + input.topic->name() + "' as " +
+                           input.topic->type() + ", '" + other->path + "' as " + theirs.topic->type(),
+                       "a topic has one type: one of the two programs needs another name for it"};
+    }
   }
   return {};
 }
