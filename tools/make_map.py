@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Draws the map that a laser would make of an SDF world: a PGM picture and a YAML file, as map_server of ROS reads them.
+
+    tools/make_map.py worlds/indoor.sdf --height 0.25 --inside 1.6 4.65 worlds/maps/indoor
+
+writes worlds/maps/indoor.yaml and .pgm. Cut at the height are the collisions (boxes, cylinders and spheres, at any pose) of all static models.
+A cell is occupied when one of 5 x 5 points in it lies within a shape, so that thin legs show. With --inside, cells that a point could not reach from
+there are unknown, such as what lies outside the walls; without it, all that is not occupied is free.
+
+Left out, and said so: other shapes than these, models of <include>, poses that are relative to another frame. A plane is ground, not an obstacle.
+"""
+import argparse
+import math
+import os
+import sys
+import xml.etree.ElementTree as ET
+
+OCCUPIED, FREE, UNKNOWN = 0, 254, 205
+POINTS = 5  # a side of a cell
+
+
+def turn(roll, pitch, yaw):
+    """Rotation matrix of SDF's roll, pitch and yaw."""
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    return ((cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+            (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+            (-sp, cp * sr, cp * cr))
+
+
+def times(a, b):
+    """a then b, each a rotation and a translation."""
+    (R, p), (Q, q) = a, b
+    return (tuple(tuple(sum(R[i][k] * Q[k][j] for k in range(3)) for j in range(3)) for i in range(3)),
+            tuple(p[i] + sum(R[i][k] * q[k] for k in range(3)) for i in range(3)))
+
+
+IDENTITY = (turn(0, 0, 0), (0.0, 0.0, 0.0))
+
+
+class World:
+    """Shapes of the static models: what they are, their size, their pose, the radius about its origin that holds them."""
+
+    def __init__(self, path):
+        self.shapes, self.left_out = [], []
+        for world in ET.parse(path).getroot().iter("world"):
+            self.left_out += [f"include of {each.findtext('uri')}" for each in world.findall("include")]
+            for model in world.findall("model"):
+                self.add_model(model, IDENTITY, model.get("name"))
+
+    def pose(self, element, name):
+        pose = element.find("pose")
+        if pose is None:
+            return IDENTITY
+        if pose.get("relative_to"):
+            self.left_out.append(f"{name}: its pose is relative to {pose.get('relative_to')}")
+            return None
+        x, y, z, *angles = map(float, pose.text.split())
+        return turn(*angles), (x, y, z)
+
+    def add_model(self, model, parent, name):
+        if (model.findtext("static") or "").strip() not in ("true", "1"):
+            return
+        at = self.pose(model, name)
+        if at is None:
+            return
+        at = times(parent, at)
+        for link in model.findall("link"):
+            of_link = self.pose(link, f"{name}/{link.get('name')}")
+            for collision in link.findall("collision") if of_link else []:
+                label = f"{name}/{link.get('name')}/{collision.get('name')}"
+                of_shape = self.pose(collision, label)
+                if of_shape:
+                    self.add_shape(collision.find("geometry")[0], times(times(at, of_link), of_shape), label)
+
+    def add_shape(self, shape, pose, label):
+        if shape.tag == "box":
+            size = [float(x) / 2 for x in shape.findtext("size").split()]
+        elif shape.tag == "cylinder":
+            size = [float(shape.findtext("radius")), float(shape.findtext("length")) / 2]
+        elif shape.tag == "sphere":
+            size = [float(shape.findtext("radius"))]
+        else:
+            if shape.tag != "plane":
+                self.left_out.append(f"{label}: a {shape.tag}")
+            return
+        self.shapes.append((shape.tag, size, pose, math.hypot(*size)))
+
+
+def within(shape, x, y, z):
+    kind, size, (R, p), _ = shape
+    d = (x - p[0], y - p[1], z - p[2])
+    a, b, c = (sum(R[i][j] * d[i] for i in range(3)) for j in range(3))
+    if kind == "box":
+        return abs(a) <= size[0] and abs(b) <= size[1] and abs(c) <= size[2]
+    if kind == "cylinder":
+        return math.hypot(a, b) <= size[0] and abs(c) <= size[1]
+    return math.hypot(a, b, c) <= size[0]
+
+
+def draw(shapes, height, resolution, margin):
+    """Rows of pixels from the lowest y upwards, and the lower left corner."""
+    cut = [s for s in shapes if abs(s[2][1][2] - height) <= s[3]]
+    if not cut:
+        sys.exit(f"make_map: no static shape reaches the height {height} m; give another --height")
+    # Corners on multiples of the resolution: two maps of a world lie on one grid.
+    low = [math.floor(min(s[2][1][i] - s[3] for s in cut) / resolution) for i in range(2)]
+    high = [math.ceil(max(s[2][1][i] + s[3] for s in cut) / resolution) for i in range(2)]
+    rows = [bytearray([FREE]) * (high[0] - low[0]) for _ in range(high[1] - low[1])]
+    step = resolution / POINTS
+    for shape in cut:
+        (x, y, _), reach = shape[2][1], shape[3]
+        for row in range(math.floor((y - reach) / resolution), math.ceil((y + reach) / resolution)):
+            for column in range(math.floor((x - reach) / resolution), math.ceil((x + reach) / resolution)):
+                if rows[row - low[1]][column - low[0]] == FREE and any(
+                        within(shape, column * resolution + (i + 0.5) * step, row * resolution + (j + 0.5) * step, height)
+                        for i in range(POINTS) for j in range(POINTS)):
+                    rows[row - low[1]][column - low[0]] = OCCUPIED
+    return trimmed(rows, low, round(margin / resolution))
+
+
+def trimmed(rows, low, margin):
+    """The part that has something in it, and a margin about it."""
+    used = [i for i, row in enumerate(rows) if OCCUPIED in row]
+    columns = [i for i in range(len(rows[0])) if any(row[i] == OCCUPIED for row in rows)]
+    if not used:
+        sys.exit("make_map: nothing is cut at this height; give another --height")
+    empty = bytes([FREE]) * (columns[-1] - columns[0] + 1 + 2 * margin)
+    side = bytes([FREE]) * margin
+    body = [bytearray(side + row[columns[0]:columns[-1] + 1] + side) for row in rows[used[0]:used[-1] + 1]]
+    return ([bytearray(empty) for _ in range(margin)] + body + [bytearray(empty) for _ in range(margin)],
+            (low[0] + columns[0] - margin, low[1] + used[0] - margin))
+
+
+def hide_unreached(rows, start):
+    """Makes free cells that no way of free neighbours leads to unknown."""
+    width, height = len(rows[0]), len(rows)
+    column, row = start
+    if not (0 <= column < width and 0 <= row < height and rows[row][column] == FREE):
+        sys.exit("make_map: the point --inside is off the map or within a shape")
+    reached, todo = {start}, [start]
+    while todo:
+        x, y = todo.pop()
+        for cell in ((x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)):
+            if 0 <= cell[0] < width and 0 <= cell[1] < height and cell not in reached and rows[cell[1]][cell[0]] == FREE:
+                reached.add(cell)
+                todo.append(cell)
+    for y, line in enumerate(rows):
+        for x, pixel in enumerate(line):
+            if pixel == FREE and (x, y) not in reached:
+                line[x] = UNKNOWN
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("world", help="SDF file")
+    parser.add_argument("out", help="path of the map, without .yaml")
+    parser.add_argument("--height", type=float, default=0.25, help="of the cut above 0 [m]; 0.25")
+    parser.add_argument("--resolution", type=float, default=0.05, help="side of a cell [m]; 0.05")
+    parser.add_argument("--margin", type=float, default=0.1, help="free room about what is drawn [m]; 0.1")
+    parser.add_argument("--inside", type=float, nargs=2, metavar=("X", "Y"), help="point from which the free cells are reached")
+    options = parser.parse_args()
+    if options.resolution <= 0 or options.margin < 0:
+        sys.exit("make_map: --resolution must be above 0, --margin not below")
+    world = World(options.world)
+    for each in world.left_out:
+        print(f"make_map: left out: {each}", file=sys.stderr)
+    rows, low = draw(world.shapes, options.height, options.resolution, options.margin)
+    if options.inside:
+        hide_unreached(rows, tuple(math.floor(x / options.resolution) - corner for x, corner in zip(options.inside, low)))
+    name = os.path.basename(options.out)
+    with open(options.out + ".pgm", "wb") as file:
+        file.write(f"P5\n{len(rows[0])} {len(rows)}\n255\n".encode() + b"".join(reversed(rows)))
+    corner = [f"{x * options.resolution:.10g}" for x in low]
+    with open(options.out + ".yaml", "w", encoding="utf-8") as file:
+        file.write(f"# {os.path.basename(options.world)} at a height of {options.height:g} m, by tools/make_map.py\n"
+                   f"image: {name}.pgm\nresolution: {options.resolution:g}\norigin: [{corner[0]}, {corner[1]}, 0]\n"
+                   "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    print(f"{options.out}.yaml: {len(rows[0])} x {len(rows)} cells")
+
+
+if __name__ == "__main__":
+    main()
