@@ -428,6 +428,40 @@ TEST(Console, CompletesWordsAndAddresses) {
   EXPECT_LE(talk.complete("show rover2/").size(), 100u);
 }
 
+TEST(Console, PublishesOnTopicsThatProgramsRead) {
+  model::Setup setup = test::arena("planar", 2);
+  setup.instances.back().controllers.push_back(
+      {"localiser",
+       "localise",
+       test::map({{"map_data", "90 90 0.1 -4.5 -4.5 0\n450*100 7650*0"},
+                  {"odometry", "truth"},
+                  {"begin", "topic"},
+                  {"max_particles", "500"}}),
+       {}});
+  Talk talk(std::move(setup));
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(talk.complete("command rover2/i"), (Words{"rover2/initialpose"}));
+  EXPECT_EQ(talk.complete("command rover1/i"), Words{}) << "that one has no such program";
+  EXPECT_EQ(talk.complete("command rover2/initialpose "),
+            (Words{"geometry_msgs/msg/PoseWithCovarianceStamped"}));
+  EXPECT_EQ(talk.complete("show rover2/initialpose.c"), (Words{"rover2/initialpose.count"}));
+  talk.ok(
+      R"(command rover2/initialpose PoseWithCovarianceStamped {"pose": {"pose": {"position": {"x": 1.5}}}})");
+  talk.ok(
+      R"(command /rover2/initialpose geometry_msgs/PoseWithCovarianceStamped {"header": {"frame_id": "x"}})");
+  talk.step(6);
+  EXPECT_EQ(talk.ok("show rover2/initialpose.count"), "rover2/initialpose.count = 2");
+  EXPECT_EQ(talk.ok("show rover2/localiser.refused"), "rover2/localiser.refused = 1")
+      << "of two in one control step the last counts, and its frame is not the map's";
+  EXPECT_TRUE(has(talk.refused("command rover2/initialpose Twist {}"),
+                  "'rover2/initialpose' takes no Twist; did you mean"));
+  EXPECT_TRUE(has(talk.refused("command rover2/initialpos PoseWithCovarianceStamped {}"),
+                  "there is no device or topic 'rover2/initialpos' that takes commands; did you mean "
+                  "'rover2/initialpose'?"));
+  EXPECT_TRUE(has(
+      talk.refused(R"(command rover2/initialpose PoseWithCovarianceStamped {"pose": {"pos": 1}})"), "pos"));
+}
+
 TEST(Console, ListsWhatBelongsToNoRobot) {
   model::Setup setup = test::arena("planar", 1, "");
   setup.media.push_back({"air", "shout", Node::map(), {}});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/test_world.h"
+#include "sim/watch/values.h"
 
 namespace sandlot::record {
 namespace {
@@ -110,6 +111,53 @@ TEST(Replay, BothWaysGiveEveryHashAgainOnBothEnginesAndFromTheMiddleOfAControlIn
         EXPECT_EQ(verdict(eventful(engine, 35), {programs, threads}), "") << engine << threads;
         EXPECT_EQ(verdict(eventful(engine, 33), {programs, threads}), "") << engine << threads;
       }
+}
+
+/// What a client publishes for a program is input like a command to a device: its first pose, then another one of the wrong type,
+/// then one that is nowhere.
+TEST(Replay, TopicsThatClientsPublishComeFromTheLog) {
+  model::Setup setup = test::arena("planar", 2);
+  setup.instances.back().controllers.push_back(
+      {"localiser",
+       "localise",
+       test::map({{"map_data", "90 90 0.1 -4.5 -4.5 0\n450*100 7200*0 450*100"},
+                  {"odometry", "truth"},
+                  {"begin", "topic"},
+                  {"max_particles", "500"}}),
+       {}});
+  const auto initial = [](double x_m) {
+    msg::PoseWithCovarianceStamped message;
+    message.pose.pose.p.x = x_m;
+    message.pose.covariance[0] = message.pose.covariance[7] = message.pose.covariance[35] = 0.01;
+    ByteWriter w;
+    write(w, message);
+    return CommandRequest{
+        "rover2/initialpose", msg::PoseWithCovarianceStamped::ros_type, {w.bytes().begin(), w.bytes().end()}};
+  };
+  CommandRequest of_other_type = initial(1);
+  of_other_type.type = msg::Twist::ros_type;
+  const Source client{Source::Kind::robot, 4};
+  const Recorded recorded = recorded_run(setup, 33, 90,
+                                         {{35, initial(-1.3), client},
+                                          {50, of_other_type, client},
+                                          {60, initial(1e9), client},
+                                          {80, initial(-1), client}});
+  const auto counts = [&](Replay& replay, const char* name) {
+    return NamedValue::find(replay.simulation(), name)->read();
+  };
+  for (const Programs programs : {Programs::recompute, Programs::logged})
+    for (const int threads : {1, 3}) EXPECT_EQ(verdict(recorded, {programs, threads}), "") << threads;
+  Replay replay = begin(recorded, {Programs::recompute});
+  for (const RecordedTick& tick : recorded.ticks) ASSERT_TRUE(replay.tick(tick));
+  EXPECT_EQ(counts(replay, "rover2/localiser.poses"), 2);
+  EXPECT_EQ(counts(replay, "rover2/localiser.refused"), 1) << "off the map";
+  EXPECT_EQ(counts(replay, "rover2/initialpose.count"), 3);
+  // Another pose in the log is seen.
+  Recorded changed = recorded;
+  for (RecordedTick& tick : changed.ticks)
+    for (LogEntry& entry : tick.log)
+      if (entry.target == "rover2/initialpose" && tick.tick == 35) entry.bytes = initial(-1.31).bytes;
+  EXPECT_THAT(verdict(changed), HasSubstr("rover2/localiser"));
 }
 
 TEST(Replay, LoggedOrdersComeAfterTheRequestsOfRules) {

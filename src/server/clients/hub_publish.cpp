@@ -204,7 +204,8 @@ void Hub::publish(ClientId id, Publication& publication, const ReadCommand& read
   if (!command) return refuse(id, publication.topic + ": " + command.error().text());
   roster_.commanded(id, Clock::now());
   Client& client = clients_.at(id);
-  if (client.claim) {
+  if (client.claim &&
+      !slot.of_program) {  // a goal is no order of the step, and who sent one may be silent then
     client.claim->commanded = Clock::now();
     client.claim->moving = true;
     if (client.claim->request.lockstep && collect(id, client, publication, *command)) return;

@@ -208,7 +208,6 @@ void Hub::tell_step(ClientId id, const StepNotice& step) {
 /// Keeps a command for the end of the step. @return false: it is not for a program in lockstep
 bool Hub::collect(ClientId id, Client& client, const Publication& publication,
                   std::span<const std::byte> command) {
-  if (publication.target.slot->of_program) return false;  // no device's, so none of the step's orders
   const std::string_view address = publication.target.address;
   for (const ProgramLink& each : client.claim->links) {
     const bool of_team = first_part(each.program.path) == client.access.name &&
