@@ -453,8 +453,9 @@ TEST(Console, PublishesOnTopicsThatProgramsRead) {
   EXPECT_EQ(talk.ok("show rover2/initialpose.count"), "rover2/initialpose.count = 2");
   EXPECT_EQ(talk.ok("show rover2/localiser.refused"), "rover2/localiser.refused = 1")
       << "of two in one control step the last counts, and its frame is not the map's";
-  EXPECT_TRUE(has(talk.refused("command rover2/initialpose Twist {}"),
-                  "'rover2/initialpose' takes no Twist; did you mean"));
+  EXPECT_TRUE(
+      has(talk.refused("command rover2/initialpose Twist {}"),
+          "'rover2/initialpose' takes no Twist; known are: geometry_msgs/msg/PoseWithCovarianceStamped"));
   EXPECT_TRUE(has(talk.refused("command rover2/initialpos PoseWithCovarianceStamped {}"),
                   "there is no device or topic 'rover2/initialpos' that takes commands; did you mean "
                   "'rover2/initialpose'?"));

@@ -167,7 +167,7 @@ Result<MapHeader> parse_map_header(std::string_view text, Diagnostics& notes, co
                                              "occupied_thresh", "free_thresh", "mode"};
   constexpr std::size_t required = 3;
   MapHeader out;
-  std::vector<bool> seen(keys.size());
+  std::vector<int> lines(keys.size());  // 0: not seen
   int number = 0;
   for (std::string_view line : split(text, '\n')) {
     ++number;
@@ -186,19 +186,22 @@ Result<MapHeader> parse_map_header(std::string_view text, Diagnostics& notes, co
       continue;
     }
     const auto which = static_cast<std::size_t>(found - keys.begin());
-    if (seen[which]) return map_file_error(file, number, "/" + *found, "this key stands here twice", "");
-    seen[which] = true;
+    if (lines[which] > 0)
+      return map_file_error(file, number, "/" + *found,
+                            "this key stands in line " + std::to_string(lines[which]) + ", too", "");
+    lines[which] = number;
     std::string path;
     if (Status status = map_file_value(out, key, value, path); !status)
       return map_file_error(file, number, path, status.error().what, status.error().fix);
   }
   for (std::size_t i = 0; i < required; ++i)
-    if (!seen[i]) return map_file_error(file, 0, "/" + keys[i], "this key is missing", "");
+    if (lines[i] == 0) return map_file_error(file, 0, "/" + keys[i], "this key is missing", "");
+  out.image_line = lines[0];
   if (out.mode != MapMode::raw && !(out.free_threshold < out.occupied_threshold))
-    return map_file_error(file, 0, "/free_thresh",
+    return map_file_error(file, std::max(lines[4], lines[5]), "/free_thresh",
                           number_text(out.free_threshold) + " is not below occupied_thresh, " +
                               number_text(out.occupied_threshold),
-                          "");
+                          "usually 0.196 and 0.65");
   return out;
 }
 

@@ -29,7 +29,8 @@ enum class MapMode : std::uint8_t { trinary, scale, raw };
 std::span<const EnumName<MapMode>> enum_names(MapMode);
 
 struct MapHeader {
-  std::string image;  ///< as written: relative to the folder of the YAML file, or absolute
+  std::string image;   ///< as written: relative to the folder of the YAML file, or absolute
+  int image_line = 0;  ///< where that stands
   double resolution_m = 0.05;
   Pose2 origin;
   bool negate = false;

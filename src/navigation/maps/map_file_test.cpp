@@ -23,6 +23,7 @@ TEST(MapFile, HeaderOfMapServerIsRead) {
   const auto header = parse_map_header(map_file_yaml, notes);
   ASSERT_TRUE(header) << header.error().text();
   EXPECT_EQ(header->image, "office.pgm");
+  EXPECT_EQ(header->image_line, 2);
   EXPECT_EQ(header->resolution_m, 0.05);
   EXPECT_EQ(header->origin.x, -10.5);
   EXPECT_EQ(header->origin.theta, 1.5);
@@ -54,11 +55,12 @@ TEST(MapFile, BadHeadersAreRefusedWithLineAndKey) {
   EXPECT_TRUE(holds(fault("[-10.5, 2, 1.5]", "[-10.5, inf, 1.5]"), "map.yaml:4: /origin/1"));
   EXPECT_TRUE(holds(fault("[-10.5, 2, 1.5]", ""), "map.yaml:4: /origin"));
   EXPECT_TRUE(holds(fault("negate: 0", "negate: maybe"), "map.yaml:5: /negate"));
-  EXPECT_TRUE(holds(fault("negate: 0", "resolution: 1"), "twice"));
+  EXPECT_TRUE(
+      holds(fault("negate: 0", "resolution: 1"), "map.yaml:5: /resolution: this key stands in line 3, too"));
   EXPECT_TRUE(holds(fault("negate: 0", "mode: fast"), "map.yaml:5: /mode"));
   EXPECT_TRUE(holds(fault("negate: 0", "some words"), "map.yaml:5: "));
   EXPECT_TRUE(holds(fault("image", "picture"), "/image: this key is missing"));
-  EXPECT_TRUE(holds(fault("0.196", "0.7"), "/free_thresh"));
+  EXPECT_TRUE(holds(fault("0.196", "0.7"), "map.yaml:7: /free_thresh"));
   Diagnostics notes;
   EXPECT_FALSE(parse_map_header("", notes));
   EXPECT_FALSE(parse_map_header(std::string(100, '\0'), notes));

@@ -155,21 +155,23 @@ class ScenarioLoader {
     constexpr std::size_t most_yaml = 64 * 1024, most_picture = std::size_t{256} << 20;
     const std::string file = beside(folder_at(place), written);
     if (const auto known = maps_.find(file); known != maps_.end()) return known->second;
-    const auto at = [](Error error, const Place& there) {
-      if (!error.place.file) error.place = there;
-      return error;
+    // A file that cannot be read is an error of the line that names it.
+    const auto named_at = [](const Error& error, const Place& there) {
+      return Error{to_string(error.place) + ": " + error.what, error.fix, there};
     };
-    auto text = read_text_file(file, most_yaml);
-    if (!text) return at(std::move(text.error()), place);
-    if (Status whole = check_text(*text, file); !whole) return at(std::move(whole.error()), place);
-    auto header = navigation::parse_map_header(*text, diagnostics_, file);
-    if (!header) return at(std::move(header.error()), place_in(file));
-    const std::string image = beside(folder_of(file), header->image);
-    auto picture = read_text_file(image, most_picture);
-    if (!picture) return at(std::move(picture.error()), place_in(file));
-    auto map = navigation::decode_map(*header, *picture, image);
-    if (!map) return at(std::move(map.error()), place_in(image));
-    return maps_.emplace(file, controllers::map_text(*map)).first->second;
+    const auto text = read_text_file(file, most_yaml);
+    if (!text) return named_at(text.error(), place);
+    SL_TRY(check_text(*text, file));
+    SL_ASSIGN(const navigation::MapHeader header, navigation::parse_map_header(*text, diagnostics_, file));
+    const std::string image = beside(folder_of(file), header.image);
+    const auto picture = read_text_file(image, most_picture);
+    if (!picture) {
+      Place line = place_in(file);
+      line.line = header.image_line;
+      return named_at(picture.error(), line);
+    }
+    SL_ASSIGN(const navigation::GridMap map, navigation::decode_map(header, *picture, image));
+    return maps_.emplace(file, controllers::map_text(map)).first->second;
   }
 
   /// One instance of a group, at the model's own pose: what the scenario declares of it, with the model of its file.

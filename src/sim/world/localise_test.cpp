@@ -72,7 +72,8 @@ TEST(LocaliseInAWorld, ReadsNoTruth) {
 
 /// It finds itself from anywhere in a minute, is carried to another room, and finds itself again. When it has, the error is
 /// that of the map, in which a surface may be half a cell's diagonal from where it is (0.05 / sqrt(2) = 0.036 m), and five
-/// of the deviations that the filter says; and that is sure of itself: deviations of 0.1 m and 0.1 rad at most.
+/// of the deviations that the filter says; and that is sure of itself: 0.15 m (the scenario's sigma_hit of 0.1 m on both axes)
+/// and 0.1 rad at most.
 TEST(SlowLocaliseInAWorld, FindsAKidnappedRobot) {
   const Pose rooms[] = {{{10.4, 2.4, 0}, quat_from_rpy(0, 0, 1.6)},
                         {{2.6, 6.4, 0}, quat_from_rpy(0, 0, -2)},
@@ -86,7 +87,7 @@ TEST(SlowLocaliseInAWorld, FindsAKidnappedRobot) {
       const Errors e = errors(*simulation);
       std::printf("seed %d, %g s: %.3f m (%.3f), %.3f rad (%.3f)\n", static_cast<int>(seed),
                   simulation->now().s(), e.position_m, e.deviation_m, e.heading_rad, e.deviation_rad);
-      EXPECT_LT(e.deviation_m, 0.1);
+      EXPECT_LT(e.deviation_m, 0.15);
       EXPECT_LT(e.deviation_rad, 0.1);
       EXPECT_LT(e.position_m, 0.036 + 5 * e.deviation_m);
       EXPECT_LT(e.heading_rad, 5 * e.deviation_rad);

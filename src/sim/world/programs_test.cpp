@@ -138,6 +138,15 @@ struct Goer {
   }
 };
 
+/// Takes the topic of a Goer for something else.
+struct Speeder : Counter {
+  Status init(const Description&, Outputs& out) {
+    (void)out.subscribe<msg::Twist>("goal");
+    return {};
+  }
+};
+
+constexpr ControllerKind speeder = make_controller<Speeder>({.name = "speeder", .help = "Errs."});
 constexpr ControllerKind goer = make_controller<Goer>({.name = "goer", .help = "Waits for goals."});
 constexpr ControllerKind counter = make_controller<Counter>({.name = "counter", .help = "Counts."});
 constexpr ControllerKind follower = make_controller<Follower>({.name = "follower", .help = "Follows."});
@@ -145,7 +154,8 @@ constexpr ControllerKind sampler = make_controller<Sampler>({.name = "sampler", 
 constexpr ControllerKind misnamed = make_controller<Misnamed>({.name = "misnamed", .help = "Errs."});
 constexpr ControllerKind dice = make_controller<Dice>({.name = "dice", .help = "Throws."});
 constexpr ControllerKind driver = make_controller<Driver>({.name = "driver", .help = "Drives."});
-constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed, &dice, &driver, &goer};
+constexpr const ControllerKind* kinds[] = {&counter, &follower, &sampler, &misnamed,
+                                           &dice,    &driver,   &goer,    &speeder};
 
 /// One rover on a plane with programs; ticks of 10 ms, control steps every 50 ms.
 model::Setup with_programs(std::vector<model::ControllerDecl> programs) {
@@ -380,9 +390,35 @@ TEST(ProgramInputs, RefuseWhatIsNoSuchMessage) {
               HasSubstr("at most 65536"));
   EXPECT_EQ(simulation->refused_commands(), refused + 5);
   EXPECT_EQ(value(*simulation, "rover1/goal.count"), 0);
-  const auto named = try_build(with_programs({{"goal", "goer", Node::map(), {}}}));
-  ASSERT_FALSE(named);
-  EXPECT_THAT(named.error().text(), HasSubstr("which is also the name of a device or program"));
+}
+
+TEST(ProgramInputs, HaveNamesAndTypesOfTheirOwn) {
+  const auto error_of = [](std::vector<model::ControllerDecl> programs, const char* device = nullptr) {
+    model::Setup setup = with_programs(std::move(programs));
+    if (device) {
+      model::DeviceDecl decl;
+      decl.name = device;
+      decl.kind = "ground_truth";
+      setup.instances.back().devices.push_back(decl);
+    }
+    const auto made = try_build(std::move(setup));
+    return made ? "" : made.error().text();
+  };
+  const model::ControllerDecl reader{"reader", "goer", Node::map(), {}},
+      named{"goal", "dice", Node::map(), {}}, other{"other", "speeder", Node::map(), {}};
+  const char* const twice =
+      "'rover1/reader' reads the topic '/rover1/goal', which is also the name of a device or program";
+  EXPECT_THAT(error_of({reader, named}), HasSubstr(twice));
+  EXPECT_THAT(error_of({named, reader}), HasSubstr(twice));
+  EXPECT_THAT(error_of({reader}, "goal"), HasSubstr(twice));
+  EXPECT_EQ(error_of({reader}, "goals"), "");
+  EXPECT_THAT(error_of({{"goal", "goer", Node::map(), {}}}),
+              HasSubstr("which is also the name of a device or program"));
+  EXPECT_THAT(
+      error_of({reader, other}),
+      HasSubstr(
+          "'rover1/other' reads the topic '/rover1/goal' as geometry_msgs/msg/Twist, 'rover1/reader' as "
+          "geometry_msgs/msg/PoseStamped"));
 }
 
 TEST(ProgramTopics, ErrorsNameWhatIsWrong) {
