@@ -51,6 +51,7 @@ constexpr Golden goldens[] = {
     {"scenarios/foraging.yaml --duration 20s", "bd2df449de057e61"},
     {"scenarios/football.yaml --duration 20s", "2a056ffff8b8a2c3"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
+    {"scenarios/office_localise.yaml --duration 30s", "162ccb418accda5e"},
 };
 
 class GoldenRun : public testing::TestWithParam<Golden> {};

@@ -38,7 +38,7 @@ IDENTITY = (turn(0, 0, 0), (0.0, 0.0, 0.0))
 
 
 class World:
-    """Shapes of the static models: what they are, their size, their pose, the radius about its origin that holds them."""
+    """Shapes of the static models: what they are, their size, their pose, and half the size of the upright box about it that holds them."""
 
     def __init__(self, path):
         self.shapes, self.left_out = [], []
@@ -83,7 +83,9 @@ class World:
             if shape.tag != "plane":
                 self.left_out.append(f"{label}: a {shape.tag}")
             return
-        self.shapes.append((shape.tag, size, pose, math.hypot(*size)))
+        sides = {"box": size, "cylinder": [size[0], *size], "sphere": size * 3}[shape.tag]
+        reach = [sum(abs(row[j]) * sides[j] for j in range(3)) for row in pose[0]]
+        self.shapes.append((shape.tag, size, pose, reach))
 
 
 def within(shape, x, y, z):
@@ -99,18 +101,18 @@ def within(shape, x, y, z):
 
 def draw(shapes, height, resolution, margin):
     """Rows of pixels from the lowest y upwards, and the lower left corner."""
-    cut = [s for s in shapes if abs(s[2][1][2] - height) <= s[3]]
+    cut = [s for s in shapes if abs(s[2][1][2] - height) <= s[3][2]]
     if not cut:
         sys.exit(f"make_map: no static shape reaches the height {height} m; give another --height")
     # Corners on multiples of the resolution: two maps of a world lie on one grid.
-    low = [math.floor(min(s[2][1][i] - s[3] for s in cut) / resolution) for i in range(2)]
-    high = [math.ceil(max(s[2][1][i] + s[3] for s in cut) / resolution) for i in range(2)]
+    low = [math.floor(min(s[2][1][i] - s[3][i] for s in cut) / resolution) for i in range(2)]
+    high = [math.ceil(max(s[2][1][i] + s[3][i] for s in cut) / resolution) for i in range(2)]
     rows = [bytearray([FREE]) * (high[0] - low[0]) for _ in range(high[1] - low[1])]
     step = resolution / POINTS
     for shape in cut:
         (x, y, _), reach = shape[2][1], shape[3]
-        for row in range(math.floor((y - reach) / resolution), math.ceil((y + reach) / resolution)):
-            for column in range(math.floor((x - reach) / resolution), math.ceil((x + reach) / resolution)):
+        for row in range(math.floor((y - reach[1]) / resolution), math.ceil((y + reach[1]) / resolution)):
+            for column in range(math.floor((x - reach[0]) / resolution), math.ceil((x + reach[0]) / resolution)):
                 if rows[row - low[1]][column - low[0]] == FREE and any(
                         within(shape, column * resolution + (i + 0.5) * step, row * resolution + (j + 0.5) * step, height)
                         for i in range(POINTS) for j in range(POINTS)):
