@@ -63,7 +63,7 @@ Result<GridMap> read_map_text(std::string_view text) {
       !numbers.take(g.origin.x) || !numbers.take(g.origin.y) || !numbers.take(g.origin.theta))
     return Error{"map_data does not begin with width, height, resolution and origin"};
   SL_TRY(navigation::check_geometry(g));
-  // Room is taken as it is filled: a short text cannot ask for much.
+  // Room is taken as it is filled: 64 MiB at the most, those of max_cells.
   while (!numbers.ended()) {
     std::size_t count = 0;
     int percent = 0;
