@@ -99,6 +99,19 @@ TEST(ProgramTopics, SpectatorsDoNotPublish) {
   EXPECT_EQ(shown(viewer, "rover2/initialpose.count"), 0);
 }
 
+TEST(ProgramTopics, AClientThatDrivesARobotPublishesForNoOther) {
+  Running run(with_localiser(), {.pace = {1.0}});
+  run.go();
+  Bridge bridge(run.url());
+  ASSERT_EQ(bridge.claim({{"robot", "rover1"}})["op"], "sandlot.claimed");
+  bridge.send({{"op", "publish"}, {"topic", topic}, {"msg", json::object()}});
+  const json refusal = bridge.next("status");
+  ASSERT_FALSE(refusal.is_null());
+  EXPECT_NE(refusal["msg"].get<std::string>().find("rover2/initialpose"), std::string::npos) << refusal;
+  Viewer admin(run.url());
+  EXPECT_EQ(shown(admin, "rover2/initialpose.count"), 0);
+}
+
 TEST(ProgramTopics, AClientOfRosbridgePublishesAndFindsThemByRosapi) {
   Running run(with_localiser(), {.pace = {1.0}});
   run.go();
