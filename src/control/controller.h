@@ -181,6 +181,12 @@ class Command {
     SL_CHECK_MSG(outputs_ != nullptr, "the program has no topics");
     outputs_->set(handle, message);
   }
+  /// What earlier steps published last on such a topic; null before the first message. It survives snapshots, as State does.
+  template <class M>
+  const M* published(Publication<M> handle) const {
+    SL_CHECK_MSG(outputs_ != nullptr, "the program has no topics");
+    return outputs_->last(handle);
+  }
   /// Where publish() puts messages: the object that init() filled. It must outlive the command.
   void bind(Outputs* outputs) { outputs_ = outputs; }
   void clear() {

@@ -78,6 +78,14 @@ class Outputs {
     next->message = message;
     output.fresh = true;
   }
+  /// The message that was published last; null before the first one.
+  template <class M>
+  const M* last(Publication<M> handle) const {
+    SL_CHECK(handle.index < outputs_.size());
+    const Topic<M>* const topic = topic_cast<M>(outputs_[handle.index].topic.get());
+    SL_CHECK(topic != nullptr);
+    return topic->count > 0 ? &topic->message : nullptr;
+  }
   /// Publishes what was held back, with `now` as its time.
   void commit(Time now);
   /// Takes over the topics, with their messages, of outputs that this object replaces.

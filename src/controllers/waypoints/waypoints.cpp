@@ -23,6 +23,7 @@ Status Waypoints::init(const Description& robot, Outputs& out) {
   } else {
     return Error{"both a drive and a topic are given", "leave one of them out", {}, "/publish"};
   }
+  if (!spec.plan.empty()) way = out.publish<msg::Path>(spec.plan);
   return {};
 }
 
@@ -30,6 +31,36 @@ void Waypoints::step(const Observation& obs, Command& cmd) {
   const msg::Twist twist = velocity(obs);
   if (shown) cmd.publish(*shown, twist);
   else cmd.set(drive, twist);
+  if (way) show_way(obs, cmd);
+}
+
+/// What was published is compared with what would be: so a restored run, and one whose `loop` was set, need no note of it.
+void Waypoints::show_way(const Observation& obs, Command& cmd) const {
+  const auto seen = obs.get(odometry);
+  if (!seen.valid) return;
+  const std::string& frame = seen.message.header.frame_id;
+  const std::size_t count = spec.points_m.size(), length = count + (spec.loop && count > 1 ? 1 : 0);
+  const auto point = [&](std::size_t i) -> const std::array<double, 2>& { return spec.points_m[i % count]; };
+  const msg::Path* const last = cmd.published(*way);
+  bool same = last && last->poses.size() == length && last->header.frame_id == frame;
+  for (std::size_t i = 0; same && i < length; ++i) {
+    const Vec3& p = last->poses[i].pose.p;
+    same = p.x == point(i)[0] && p.y == point(i)[1];
+  }
+  if (same) return;
+  msg::Path path;
+  path.header = {obs.now(), frame};
+  for (std::size_t i = 0; i < length; ++i) {
+    msg::PoseStamped& made = path.poses.emplace_back();
+    made.header = path.header;
+    made.pose.p = {point(i)[0], point(i)[1], 0};
+    // The last one looks where the one before does.
+    const std::size_t from = i + 1 < length || i == 0 ? i : i - 1, to = std::min(from + 1, length - 1);
+    if (to != from)
+      made.pose.q = quat_from_axis_angle(
+          {0, 0, 1}, math::atan2(point(to)[1] - point(from)[1], point(to)[0] - point(from)[0]));
+  }
+  cmd.publish(*way, path);
 }
 
 msg::Twist Waypoints::velocity(const Observation& obs) {

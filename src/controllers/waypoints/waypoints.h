@@ -4,12 +4,15 @@
 /// Reads    an Odometry of the robot's base: the drive's own, or a ground_truth. The points are in its frame.
 /// Orders   a Twist for a drive that can turn on the spot. With `publish` it orders nothing and publishes the Twist on a topic
 ///          of that name for another program, such as four_wheel_steer.
+/// Shows    with `plan`, the points as a Path on a topic of that name, in the odometry's frame: once the odometry is there, and again
+///          when `loop`, which leads it back to its first point, or the points are changed. Headings point to the next point; heights
+///          are 0, since points have none.
 /// Method   pure pursuit of the next point: the arc that touches the present heading and ends in the point has
 ///          curvature 2 sin(a) / d (d: distance, a: bearing of the point). A point more than 60 degrees to the side is
 ///          first turned to on the spot. Speed falls so that the turn stays within turn_speed and, before the last
 ///          point, with the square root of the distance, so that braking takes a constant deceleration.
 /// Limits   no obstacles, no heading at the points; corners are cut by at most `tolerance`.
-/// Cost     one arc tangent per step, no allocation.
+/// Cost     one arc tangent per step, no allocation; with `plan` a comparison per point.
 /// Errors   no points; both `drive` and `publish`.
 /// Source   R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01 (1992).
 #include <array>
@@ -21,7 +24,7 @@ namespace sandlot::controllers::waypoints {
 
 struct Spec {
   std::vector<std::array<double, 2>> points_m;
-  std::string odometry, drive, publish;
+  std::string odometry, drive, publish, plan;
   bool loop = true;
   double tolerance_m = 0.15;
   double speed_mps = 0.5;
@@ -43,6 +46,9 @@ struct Spec {
             "Topic, such as cmd_vel, that shows the velocities to other programs; no drive is ordered then.",
             0, 0, Field::none, 1000},
         s.publish);
+    visit(Field{"plan", "", "Topic, such as plan, that shows the points as a path; empty: none.", 0, 0,
+                Field::none, 1000},
+          s.plan);
     visit(Field{"loop", "", "Whether to begin again after the last point.", 0, 1, tunable}, s.loop);
     visit(Field{"tolerance", "m", "Distance at which a point counts as reached.", 1e-3, 100, tunable},
           s.tolerance_m);
@@ -74,12 +80,14 @@ struct Waypoints {
   Reading<msg::Odometry> odometry;
   Actuator<msg::Twist> drive;
   std::optional<Publication<msg::Twist>> shown;  ///< instead of the drive
+  std::optional<Publication<msg::Path>> way;
 
   Status init(const Description& robot, Outputs& out);
   void step(const Observation& obs, Command& cmd);
 
  private:
   msg::Twist velocity(const Observation& obs);
+  void show_way(const Observation& obs, Command& cmd) const;
 };
 
 }  // namespace sandlot::controllers::waypoints

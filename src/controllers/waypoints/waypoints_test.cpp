@@ -169,6 +169,79 @@ TEST(Waypoints, PublishesForAnotherProgramInsteadOfOrdering) {
   EXPECT_FALSE(both.init(description(), other));
 }
 
+/// The controller with its plan, standing at the origin of its odometry.
+struct Plans {
+  Waypoints controller;
+  Outputs outputs{"rover/way"};
+  Topic<msg::Odometry> topic{"/rover/drive/ideal"};
+  std::vector<std::uint64_t> seen{0};
+
+  explicit Plans(Spec spec) {
+    controller.spec = std::move(spec);
+    const Status ready = controller.init(description(), outputs);
+    EXPECT_TRUE(static_cast<bool>(ready));
+    topic.message.header.frame_id = "rover/odom";
+  }
+  void step(double now_s) {
+    const TopicBase* const topics[] = {&topic};
+    Command cmd;
+    cmd.bind(&outputs);
+    controller.step(Observation(Time::from_s(now_s), topics, seen, Stream(1, 2, Purpose::controller, 3)),
+                    cmd);
+    outputs.commit(Time::from_s(now_s));
+  }
+  const Topic<msg::Path>& plan() const { return *topic_cast<msg::Path>(outputs.all()[0].topic.get()); }
+  double off(std::size_t i, double heading_rad) const {
+    const Quat difference = conjugate(plan().message.poses[i].pose.q) *
+                            quat_from_axis_angle({0, 0, 1}, heading_rad);
+    return std::abs(difference.z);
+  }
+};
+
+TEST(Waypoints, ShowsItsPlanOnceAndWhenItChanges) {
+  Plans t({.points_m = {{2, 0}, {2, 3}, {0, 3}}, .plan = "plan", .loop = false});
+  EXPECT_EQ(t.plan().name(), "/rover/way/plan");
+  t.step(0.1);
+  EXPECT_EQ(t.plan().count, 0u);  // without odometry there is no frame
+  t.topic.publish({});
+  for (int k = 2; k < 20; ++k) t.step(0.1 * k);
+  ASSERT_EQ(t.plan().count, 1u);
+  const msg::Path& path = t.plan().message;
+  EXPECT_EQ(path.header.frame_id, "rover/odom");
+  EXPECT_EQ(path.header.stamp, Time::from_s(0.2));
+  ASSERT_EQ(path.poses.size(), 3u);
+  EXPECT_EQ(path.poses[1].header.frame_id, "rover/odom");
+  EXPECT_EQ(path.poses[1].pose.p.x, 2);
+  EXPECT_EQ(path.poses[1].pose.p.y, 3);
+  // Up, to the left, and as before at the end.
+  EXPECT_LE(t.off(0, math::pi / 2), 1e-12);
+  EXPECT_LE(t.off(1, math::pi), 1e-12);
+  EXPECT_LE(t.off(2, math::pi), 1e-12);
+
+  t.controller.spec.loop = true;
+  for (int k = 20; k < 30; ++k) t.step(0.1 * k);
+  EXPECT_EQ(t.plan().count, 2u);
+  ASSERT_EQ(t.plan().message.poses.size(), 4u);
+  EXPECT_EQ(t.plan().message.poses[3].pose.p.x, 2);
+  EXPECT_EQ(t.plan().message.poses[3].pose.p.y, 0);
+  EXPECT_LE(t.off(2, math::atan2(-3, 2)), 1e-12);
+
+  // A run that went back to before the first message shows it again.
+  t.outputs.all()[0].topic->count = 0;
+  t.step(3);
+  EXPECT_EQ(t.plan().count, 1u);
+}
+
+TEST(Waypoints, ShowsASinglePointAndNoPlanUnasked) {
+  Plans one({.points_m = {{2, 1}}, .plan = "plan"});
+  one.topic.publish({});
+  one.step(0);
+  ASSERT_EQ(one.plan().message.poses.size(), 1u);
+  EXPECT_EQ(one.plan().message.poses[0].pose.q.w, 1);
+  Trial without({.points_m = {{2, 1}}});
+  EXPECT_TRUE(without.outputs.empty());
+}
+
 TEST(Waypoints, ReadsPointsAndNamesWhatIsMissing) {
   ControllerAdapter<Waypoints> adapter;
   const auto complaint = [&](const Node& config) {
