@@ -234,6 +234,7 @@ void write_instance(JsonWriter& w, const Simulation& simulation, const Simulatio
     w.key("robot").flag(instance.is_robot);
     w.key("team").text(instance.team);
     write_pose(w.key("pose"), simulation.engine().pose(entity.id));
+    if (instance.is_robot) write_pose(w.key("start"), instance.X_WM);
     w.key("devices").list([&] {
       for (const auto& device : entity.devices) {
         const Kind& kind = simulation.kind(*device);

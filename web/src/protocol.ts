@@ -140,6 +140,8 @@ export interface Instance {
   team: string;
   /** Of the model frame, when the world was told. */
   pose: Pose;
+  /** Of the model frame when the run, or the robot, began; robots only. */
+  start?: Pose;
   devices: Device[];
   controllers: Part[];
 }

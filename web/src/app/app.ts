@@ -16,6 +16,7 @@ import {Frame} from '../ui/frame';
 import {GraphPanel} from '../ui/graph';
 import {openHelp} from '../ui/help';
 import {Inspector} from '../ui/inspector';
+import {LayersLegend} from '../ui/layers';
 import {LogPanel} from '../ui/log';
 import {MatchPanel} from '../ui/match';
 import {Toasts} from '../ui/overlays';
@@ -36,6 +37,8 @@ import type {Context} from './context';
 import {dragLine} from './drags';
 import {word} from './format';
 import {Game} from './game';
+import {Goals} from './goals';
+import {Layers} from './layers';
 import {Parameters} from './parameters';
 import {SensorOverlays} from './sensors';
 import {remember, remembered} from './settings';
@@ -50,6 +53,7 @@ export class App {
   readonly plots: PlotsPanel;
   readonly agents: AgentsPanel;
   readonly game: Game;
+  readonly layers: Layers;
   private readonly steer: Steer;
   private readonly actions: Actions;
   private readonly toasts = new Toasts();
@@ -148,11 +152,17 @@ export class App {
     };
     this.frame.onShown();
 
-    this.tools = new SceneTools(this.context, this.teleop, this.video, this.frame.sceneHost);
-    this.frame.sceneHost.append(...this.tools.elements, new Score(this.context).element, new ScoreBoard(this.context, this.game).element);
+    this.layers = new Layers(this.client, this.store, this.scene);
+    const legend = new LayersLegend(this.layers);
+    const goals = new Goals(this.client, this.store, this.scene, this.layers, (text, kind) => this.toasts.show(text, kind));
+    this.scene.onAim = (aim) => goals.aim(aim);
+    this.tools = new SceneTools(this.context, this.teleop, this.video, goals, this.frame.sceneHost);
+    this.frame.sceneHost.append(...this.tools.elements, legend.element, new Score(this.context).element, new ScoreBoard(this.context, this.game).element);
     const sensors = new SensorOverlays(this.client, this.store, this.scene);
     this.tools.onOverlays = () => {
       sensors.show({scans: this.tools.on.scans ?? false, ranges: this.tools.on.ranges ?? false, views: this.tools.on.frusta ?? false, objects: this.tools.on.objects ?? false});
+      this.layers.show(this.tools.on.layers ?? true);
+      legend.setShown(this.tools.on.layers ?? true);
       this.listen();
     };
     this.store.onWorld.on(() => this.listen());
@@ -310,7 +320,7 @@ export class App {
     const tool = (id: Tool): [string, () => void] => [`tool.${id}`, () => this.tools.setTool(id)];
     return {
       ...Object.fromEntries(cameras.map(camera)), ...Object.fromEntries(overlays.map(([id]) => [`overlay.${id}`, () => this.tools.toggle(id)])),
-      ...Object.fromEntries(['plots', 'match', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'agents', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull'] as Tool[]).map(tool)),
+      ...Object.fromEntries(['plots', 'match', 'pictures', 'log', 'clients', 'topics', 'graph', 'matrix', 'agents', 'panels', 'commands'].map(pane)), ...Object.fromEntries((['orbit', 'move', 'pull', 'goal'] as Tool[]).map(tool)),
       'time.play': () => this.steer.togglePlay(),
       'time.step': () => void this.steer.say('step'),
       'time.reset': () => void this.steer.say('reset'),

@@ -5,9 +5,10 @@
 //   middle, shift    pan
 //   while moving     shift: up and down; alt: turn
 //   touch            one finger orbits, two zoom and pan, a long press selects and drags
+//   goal tool        left press or one finger: where; drag: the heading; release: sent
 import * as THREE from 'three';
 
-export type Tool = 'orbit' | 'move' | 'pull';
+export type Tool = 'orbit' | 'move' | 'pull' | 'goal';
 export type DragMode = 'move' | 'turn' | 'pull';
 
 export interface Drag {
@@ -19,6 +20,16 @@ export interface Drag {
   yaw?: number;
   /** In the link: where it was grabbed. */
   point?: [number, number, number];
+}
+
+/** A place on the ground with a heading that a hand points out. */
+export interface Aim {
+  phase: 'start' | 'move' | 'end' | 'cancel';
+  at: [number, number, number];
+  /** Where the hand is. */
+  pointer: [number, number, number];
+  /** Null: it was not dragged. */
+  yaw_rad: number | null;
 }
 
 /** What can be taken hold of, as the scene knows it. */
@@ -46,6 +57,9 @@ export interface HandsHost {
   pan(dx: number, dy: number): void;
   zoom(factor: number, x: number, y: number): void;
   drag(drag: Drag): void;
+  /** What is under a place of the view; null: the sky. */
+  groundAt(x: number, y: number): THREE.Vector3 | null;
+  aim(aim: Aim): void;
   viewDirection(): THREE.Vector3;
 }
 
@@ -67,7 +81,8 @@ export class Hands {
   tool: Tool = 'orbit';
   /** What the pointer that is down does. */
   private held: Held | null = null;
-  private gesture: 'none' | 'orbit' | 'pan' | 'drag' = 'none';
+  private gesture: 'none' | 'orbit' | 'pan' | 'drag' | 'aim' = 'none';
+  private aimed: Aim | null = null;
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private down = { x: 0, y: 0, time_ms: 0 };
   private strayed = false;
@@ -125,6 +140,7 @@ export class Hands {
     this.pointers.set(event.pointerId, at);
     if (this.pointers.size === 2) {
       this.endDrag();
+      this.endAim('cancel');
       this.gesture = 'pan';
       this.pinch_px = this.spread();
       window.clearTimeout(this.press_timer);
@@ -134,6 +150,12 @@ export class Hands {
     this.down = { ...at, time_ms: event.timeStamp };
     this.strayed = false;
     const touch = event.pointerType === 'touch';
+    if (this.tool === 'goal' && event.button === 0 && !event.shiftKey) {
+      const at = this.host.groundAt(this.down.x, this.down.y)?.toArray() ?? null;
+      this.gesture = 'aim';
+      if (at) this.host.aim((this.aimed = { phase: 'start', at, pointer: at, yaw_rad: null }));
+      return;
+    }
     const grip = touch || event.button === 1 ? null : this.host.grip(at.x, at.y);
     const pulls = this.tool === 'pull' || event.ctrlKey || event.metaKey;
     this.gesture = event.button === 2 || event.button === 1 || (event.shiftKey && !grip) ? 'pan' : 'orbit';
@@ -182,7 +204,8 @@ export class Hands {
     if (!this.strayed && Math.hypot(at.x - this.down.x, at.y - this.down.y) < CLICK_PX) return;
     this.strayed = true;
     window.clearTimeout(this.press_timer);
-    if (this.held) this.moveHeld(at, event);
+    if (this.gesture === 'aim') this.moveAim(at);
+    else if (this.held) this.moveHeld(at, event);
     else if (this.gesture === 'orbit') this.host.orbit(dx, dy);
     else if (this.gesture === 'pan') this.host.pan(dx, dy);
   }
@@ -192,10 +215,12 @@ export class Hands {
     const was_alone = this.pointers.size === 1;
     this.pointers.delete(event.pointerId);
     window.clearTimeout(this.press_timer);
+    const was_aim = this.gesture === 'aim';
     const was_drag = this.gesture === 'drag' && this.held?.begun;
     this.endDrag();
+    this.endAim('end');
     this.gesture = this.pointers.size > 0 ? 'orbit' : 'none';
-    if (this.strayed || was_drag || !was_alone || event.button > 0) return;
+    if (this.strayed || was_drag || was_aim || !was_alone || event.button > 0) return;
     if (event.timeStamp - this.down.time_ms > LONG_PRESS_MS && event.pointerType === 'touch') return;
     const again = event.timeStamp - this.last_click.time_ms < 350 && Math.hypot(at.x - this.last_click.x, at.y - this.last_click.y) < 8;
     this.last_click = { ...at, time_ms: again ? 0 : event.timeStamp };
@@ -207,7 +232,31 @@ export class Hands {
     this.pointers.delete(event.pointerId);
     window.clearTimeout(this.press_timer);
     this.endDrag();
+    this.endAim('cancel');
     this.gesture = 'none';
+  }
+
+  /** What was begun with the goal tool is given up. */
+  giveUp(): void {
+    this.endAim('cancel');
+  }
+
+  private moveAim(at: { x: number; y: number }): void {
+    const aim = this.aimed;
+    if (aim === null) return;
+    // On the level of the goal: what stands behind it, or a slope, does not turn it.
+    const met = this.meet(this.host.ray(at.x, at.y), new THREE.Plane(new THREE.Vector3(0, 0, 1), -aim.at[2]));
+    if (!met || Math.hypot(met.x - aim.at[0], met.y - aim.at[1]) < 1e-3) return;
+    aim.phase = 'move';
+    aim.pointer = [met.x, met.y, met.z];
+    aim.yaw_rad = Math.atan2(met.y - aim.at[1], met.x - aim.at[0]);
+    this.host.aim(aim);
+  }
+
+  private endAim(phase: 'end' | 'cancel'): void {
+    const aim = this.aimed;
+    this.aimed = null;
+    if (aim) this.host.aim({ ...aim, phase });
   }
 
   private onWheel(event: WheelEvent): void {

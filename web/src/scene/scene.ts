@@ -15,12 +15,14 @@ import { Between } from './between';
 import { Bodies, type Body } from './bodies';
 import { CameraRig, type CameraMode, type Subject } from './camera';
 import { Foresight } from './foresight';
-import { Hands, type Drag, type Grip, type Tool } from './hands';
+import { Hands, type Aim, type Drag, type Grip, type Tool } from './hands';
 import { Meter, type SceneStats } from './meter';
 import { Outline } from './outline';
 import { overviewOf, someLeave } from './overview';
 import { BAR_PX, Batteries } from './overlays/batteries';
+import { GoalFlag } from './overlays/goal_flag';
 import { Labels } from './overlays/labels';
+import { type Drawing, Layers } from './overlays/layers';
 import { Links } from './overlays/links';
 import { type CameraView, type Detection, Marks, teamColors, type RangeReading } from './overlays/marks';
 import { PullLine } from './overlays/pull';
@@ -29,8 +31,9 @@ import { Trails } from './overlays/trails';
 import { invert, transform, yawOf } from './poses';
 import { pickSlots } from './picking';
 import { makeRenderer } from './renderer';
+import { Terrain } from './terrain';
 
-export type { CameraMode, Drag, RangeReading, Scan, SceneStats, Theme, Tool };
+export type { Aim, CameraMode, Drag, Drawing, RangeReading, Scan, SceneStats, Theme, Tool };
 
 export interface Picked {
   /** Name of the instance; null: the ground. */
@@ -49,6 +52,7 @@ const OVERVIEW_MS = 1000;
 export class SceneView {
   onSelect: (address: string | null) => void = () => {};
   onDrag: (drag: Drag) => void = () => {};
+  onAim: (aim: Aim) => void = () => {};
 
   private readonly host: HTMLElement;
   private readonly message: HTMLElement;
@@ -67,6 +71,9 @@ export class SceneView {
   private readonly scans: Scans;
   private readonly trails: Trails;
   private readonly pull_line: PullLine;
+  private readonly terrain: Terrain;
+  private readonly layers: Layers;
+  private readonly goal: GoalFlag;
   private readonly hands: Hands | null;
   private readonly foresight: Foresight;
   private readonly between = new Between();
@@ -132,6 +139,12 @@ export class SceneView {
     this.scans = new Scans(this.scene);
     this.trails = new Trails(this.scene);
     this.pull_line = new PullLine(this.scene);
+    this.terrain = new Terrain(() => {
+      this.layers.placeAll();
+      this.invalidate();
+    });
+    this.layers = new Layers(this.scene, this.terrain);
+    this.goal = new GoalFlag(this.scene);
     this.labels.visible = this.overlays.names;
     this.setTheme('light');
     this.observer = new ResizeObserver(() => this.resize());
@@ -172,7 +185,9 @@ export class SceneView {
   }
 
   setTool(tool: Tool): void {
-    if (this.hands) this.hands.tool = tool;
+    if (!this.hands) return;
+    if (tool !== 'goal') this.hands.giveUp();
+    this.hands.tool = tool;
   }
 
   setWorld(world: World): void {
@@ -184,6 +199,7 @@ export class SceneView {
     this.bodies.setWorld(world);
     this.backdrop.setWorld(world, this.bodies, this.assets);
     this.backdrop.setShadows(this.overlays.shadows);
+    this.terrain.setWorld(world, this.assets);
     const teams = teamColors(world.instances.map((i) => i.team));
     this.marks.setTeams(teams);
     this.links.setMedia(world.media ?? []);
@@ -192,6 +208,7 @@ export class SceneView {
     if (fresh) {
       this.scans.clear();
       this.marks.clear();
+      this.goal.hide();
     }
     // Their bodies may be others now.
     this.links.clear();
@@ -218,6 +235,9 @@ export class SceneView {
     this.marks.clear();
     this.links.clear();
     this.batteries.clear();
+    this.layers.clear();
+    this.terrain.clear();
+    this.goal.hide();
     this.trails.setBodies([], () => TRAIL, true);
     this.world = null;
     this.epoch = -1;
@@ -355,7 +375,50 @@ export class SceneView {
     if (this.overlays.batteries) this.invalidate();
   }
 
+  /** Draws a layer, or takes it away. @param frame  pose of its frame in the world */
+  setLayer(id: string, drawing: Drawing | null, frame: Float64Array, color_index: number): void {
+    const begin_ms = performance.now();
+    this.layers.set(id, drawing, frame, color_index);
+    this.meter.addScript(performance.now() - begin_ms);
+    this.invalidate();
+  }
+
+  /** How often layers were placed: nothing is when nothing has changed. */
+  get layers_placed(): number {
+    return this.layers.placed;
+  }
+
+  /** Cells that a side of a map may have. */
+  get map_side_max(): number {
+    return this.renderer?.capabilities.maxTextureSize ?? 4096;
+  }
+
+  /** Pose of a frame that is a link or a device, "rover/base_link" or "rover/laser", as it is known now; null: there is none such. */
+  framePose(frame: string): Float64Array | null {
+    const out = new Float64Array(7);
+    const device = this.bodies.devices.get(frame);
+    if (device) {
+      device.body.devicePose(device.device, out);
+      return out;
+    }
+    const cut = frame.indexOf('/');
+    const body = cut < 0 ? undefined : this.bodies.by_name.get(frame.slice(0, cut));
+    const link = body?.kin.model.links.findIndex((l) => l.name === frame.slice(cut + 1)) ?? -1;
+    if (body === undefined || link < 0) return null;
+    out.set(body.world.subarray(7 * link, 7 * link + 7));
+    return out;
+  }
+
+  /** The flag of the latest goal. */
+  showGoal(at: readonly number[] | null, yaw_rad = 0, pointer: readonly number[] | null = null): void {
+    if (at) this.goal.show(at, yaw_rad, pointer);
+    else this.goal.hide();
+    this.invalidate();
+  }
+
   setTheme(theme: Theme): void {
+    this.layers.setTheme(theme);
+    this.goal.setTheme(theme);
     this.batteries.setTheme(theme);
     this.links.setTheme(theme);
     this.backdrop.setTheme(theme);
@@ -427,7 +490,7 @@ export class SceneView {
     this.observer.disconnect();
     this.hands?.dispose();
     this.bodies.clear();
-    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.links, this.batteries, this.scans, this.trails, this.pull_line]) part.dispose();
+    for (const part of [this.foresight, this.assets, this.backdrop, this.outline, this.labels, this.marks, this.links, this.batteries, this.scans, this.trails, this.pull_line, this.layers, this.goal]) part.dispose();
     this.renderer?.dispose();
     this.renderer?.domElement.remove();
     this.message.remove();
@@ -491,6 +554,7 @@ export class SceneView {
     this.marks.update(this.bodies, this.selected);
     this.labels.update(this.labelled(), camera, this.width_px, this.height_px, this.selected, this.lift_px);
     this.batteries.update(this.bodies.by_id, this.width_px, this.height_px);
+    this.layers.update(this.width_px, this.height_px);
     const fading = this.links.update(performance.now(), this.width_px, this.height_px);
     this.drawPull();
     const scripted_ms = performance.now();
@@ -607,7 +671,7 @@ export class SceneView {
       hoverAt: (x, y) => {
         const address = this.pick(x, y)?.address ?? null;
         const body = this.bodyOf(address);
-        canvas.style.cursor = body === null ? 'default' : body.is_static || this.tool === 'orbit' ? 'pointer' : 'grab';
+        canvas.style.cursor = this.tool === 'goal' ? 'crosshair' : body === null ? 'default' : body.is_static || this.tool === 'orbit' ? 'pointer' : 'grab';
         if (body === this.hovered) return;
         this.hovered = body;
         this.invalidate();
@@ -636,6 +700,11 @@ export class SceneView {
         this.onDrag(drag);
         this.invalidate();
       },
+      groundAt: (x, y) => {
+        const point = this.pick(x, y)?.point;
+        return point ? new THREE.Vector3(...point) : null;
+      },
+      aim: (aim) => this.onAim(aim),
       viewDirection: () => this.rig.camera.getWorldDirection(new THREE.Vector3()),
     };
   }

@@ -1,6 +1,7 @@
 // What floats over the scene: tools, cameras, overlays, video; the stick and the note of the robot that is driven; the veil while there
 // is not a connection.
 import type {Context} from '../app/context';
+import type {Goals} from '../app/goals';
 import {remember, remembered} from '../app/settings';
 import {h, setReason, setText} from './dom';
 import {icon} from './icons';
@@ -9,7 +10,7 @@ import {Stick} from './stick';
 import type {Teleop} from './teleop';
 import type {Video} from './video';
 
-export type Tool = 'orbit' | 'move' | 'pull';
+export type Tool = 'orbit' | 'move' | 'pull' | 'goal';
 export type CameraMode = 'orbit' | 'static' | 'follow' | 'tv' | 'race' | 'top' | 'robot';
 
 export const cameras: [CameraMode, string][] = [
@@ -19,6 +20,7 @@ export const cameras: [CameraMode, string][] = [
 export const overlays: [string, string, boolean][] = [
   ['grid', 'Grid', true], ['shadows', 'Shadows', true], ['names', 'Names', true], ['trails', 'Trails', true], ['links', 'Communication links', true], ['batteries', 'Batteries', true],
   ['scans', 'Laser scans', true], ['ranges', 'Ranges with distances', true], ['frusta', 'Camera views', false], ['objects', 'Detected objects', true], ['velocity', 'Velocities', false], ['frames', 'Frames', false], ['contacts', 'Contacts', false], ['collisions', 'Collision shapes', false], ['teams', 'Team colours', true],
+  ['layers', 'Maps, plans and estimates', true],
 ];
 
 export class SceneTools {
@@ -37,7 +39,7 @@ export class SceneTools {
   /** Told of overlays that were switched. */
   onOverlays: () => void = () => undefined;
 
-  constructor(private readonly context: Context, private readonly teleop: Teleop, private readonly video: Video, private readonly host: HTMLElement) {
+  constructor(private readonly context: Context, private readonly teleop: Teleop, private readonly video: Video, private readonly goals: Goals, private readonly host: HTMLElement) {
     const {actions, store, client} = context;
     const toolButton = (tool: Tool, id: string, symbol: string, label: string): HTMLButtonElement => {
       const button = h('button', {class: 'plain icon-only', 'aria-label': label, 'aria-pressed': 'false', testid: `tool-${tool}`, on: {click: () => actions.run(id)}}, icon(symbol));
@@ -54,12 +56,19 @@ export class SceneTools {
     });
     this.stickHost.append(stick.element);
     this.elements = [
-      h('div', {class: 'float top-left', role: 'toolbar', 'aria-label': 'Tools'}, toolButton('orbit', 'tool.orbit', 'cursor', 'Look around'), toolButton('move', 'tool.move', 'move', 'Move things'), toolButton('pull', 'tool.pull', 'pull', 'Pull things')),
+      h('div', {class: 'float top-left', role: 'toolbar', 'aria-label': 'Tools'}, toolButton('orbit', 'tool.orbit', 'cursor', 'Look around'), toolButton('move', 'tool.move', 'move', 'Move things'), toolButton('pull', 'tool.pull', 'pull', 'Pull things'), toolButton('goal', 'tool.goal', 'flag', 'Send the robot somewhere')),
       h('div', {class: 'float top-right', role: 'toolbar', 'aria-label': 'View'}, this.camera, this.layers, this.film, photo), this.banner, this.stickHost, this.veil,
     ];
     this.camera.title = 'Camera (1 to 7)';
     host.addEventListener('click', (event) => this.click(event), true);
-    store.onRole.on(() => this.show());
+    store.onRole.on(() => {
+      if (this.tool === 'goal' && store.whyNotSteer() !== null) this.setTool('orbit');
+      this.show();
+    });
+    // With the tool in hand another robot is sent.
+    store.onSelection.on(() => {
+      if (this.tool === 'goal') this.beginGoal();
+    });
     client.onState.on(() => this.showVeil());
     teleop.onChange.on(() => this.show());
     video.onChange = () => this.show();
@@ -79,9 +88,22 @@ export class SceneTools {
   }
 
   setTool(tool: Tool): void {
+    if (this.tool === 'goal') this.goals.end();
     this.tool = this.tool === tool ? 'orbit' : tool;
     this.context.scene.setTool(this.tool);
     this.show();
+    if (this.tool === 'goal') this.beginGoal();
+  }
+
+  private beginGoal(): void {
+    void this.goals.begin().then((why) => {
+      if (this.tool !== 'goal') return;
+      if (why !== null) {
+        this.context.toast(why, 'warning');
+        this.setTool('orbit');
+      }
+      this.show();
+    });
   }
 
   /** The next click in the scene says where. */
@@ -129,10 +151,14 @@ export class SceneTools {
     this.film.title = this.video.active ? 'Stop and save the video' : actions.titleOf('scene.video');
     const armed = this.teleop.armed;
     this.stickHost.hidden = armed === null;
-    this.banner.hidden = armed === null && this.placing === null;
+    const sends = this.tool === 'goal' ? this.goals.robot : null;
+    this.banner.hidden = armed === null && this.placing === null && sends === null;
     this.banner.classList.toggle('armed', armed !== null);
     if (this.placing) {
       this.banner.replaceChildren(h('span', {}, `Click where ${this.placing.what} shall stand`), h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Cancel'));
+    } else if (sends !== null) {
+      this.banner.classList.remove('armed');
+      this.banner.replaceChildren(icon('flag'), h('span', {}, 'Press where ', h('b', {}, sends), ' shall go, drag for the heading'), h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Done'));
     } else if (armed !== null) {
       const how = this.teleop.gamepad ? 'gamepad, W A S D or stick' : 'W A S D, arrows or stick';
       this.banner.replaceChildren(icon('gamepad'), h('span', {}, 'Driving ', h('b', {}, armed)), h('span', {class: 'dim how'}, how), h('button', {class: 'small', on: {click: () => this.teleop.disarm()}}, 'Stop'));
