@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstring>
 #include <set>
-#include <utility>
 
 #include "base/field_json.h"
 #include "base/text.h"
@@ -203,6 +202,18 @@ void write_part(JsonWriter& w, std::string_view name, std::string_view path, std
   });
 }
 
+/// Topics that clients may publish for a program; not there where it reads none.
+void write_inputs(JsonWriter& w, const Outputs& outputs) {
+  if (outputs.inputs().empty()) return;
+  w.key("inputs").list([&] {
+    for (const Outputs::Input& input : outputs.inputs())
+      w.object([&] {
+        w.key("name").text(input.topic->name());
+        w.key("type").text(input.topic->type());
+      });
+  });
+}
+
 void write_programs(JsonWriter& w, const Simulation::ProgramEntries& programs) {
   w.list([&] {
     for (const auto& program : programs)
@@ -211,14 +222,7 @@ void write_programs(JsonWriter& w, const Simulation::ProgramEntries& programs) {
         w.key("path").text(program->path);
         w.key("kind").text(program->decl.kind);
         if (program->inactive) w.key("inactive").flag(true);
-        if (!program->outputs || std::as_const(*program->outputs).inputs().empty()) return;
-        w.key("inputs").list([&] {
-          for (const Outputs::Input& input : std::as_const(*program->outputs).inputs())
-            w.object([&] {
-              w.key("name").text(input.topic->name());
-              w.key("type").text(input.topic->type());
-            });
-        });
+        if (program->outputs) write_inputs(w, *program->outputs);
       });
   });
 }

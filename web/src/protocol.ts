@@ -124,6 +124,8 @@ export interface Part {
   kind: string;
   /** Of a program that was stopped, or is not started yet. */
   inactive?: boolean;
+  /** Topics that clients may publish for a program: "/rover/goal_pose", "geometry_msgs/msg/PoseStamped". */
+  inputs?: {name: string; type: string}[];
 }
 
 export interface Team {

@@ -1,55 +1,105 @@
-// Goals by hand: a place on the ground and a heading, published to the selected robot as geometry_msgs/PoseStamped on /ROBOT/goal_pose.
+// Poses by hand: a place on the ground and a heading, published for the programs of a robot that read such a topic: /ROBOT/goal_pose,
+// /ROBOT/initialpose, or whatever they call it.
 import type {Client} from '../net/client';
+import {Signal} from '../net/signal';
+import type {World} from '../protocol';
+import {yawOf} from '../scene/poses';
 import type {Aim, SceneView} from '../scene/scene';
-import {goalMessage} from './layer_data';
+import {goalMessage, isPoseType, PoseType} from './layer_data';
 import type {Layers} from './layers';
 import type {Store} from './store';
 
-const answer_ms = 3000;
-
-export function goalTopic(robot: string): string {
-  return `/${robot}/goal_pose`;
+export interface GoalInput {
+  /** "/rover/goal_pose". */
+  topic: string;
+  type: PoseType;
+  /** That read it: "rover/navigator". */
+  programs: string[];
 }
 
-/** The robots of a world that can be sent somewhere: some program listens to their goals. */
-export function robotsWithGoals(robots: readonly string[], subscribed: {has: (topic: string) => boolean}): string[] {
-  return robots.filter((robot) => subscribed.has(goalTopic(robot)));
+/** Topics on which a robot is told poses, by its programs and its team's that run; those for goals first. */
+export function goalInputs(world: World | null, robot: string): GoalInput[] {
+  const instance = world?.instances.find((i) => i.name === robot && i.robot);
+  if (!world || !instance) return [];
+  const team = (world.teams ?? []).find((t) => t.name === instance.team);
+  const found = new Map<string, GoalInput>();
+  for (const program of [...(instance.controllers ?? []), ...(team?.programs ?? [])]) {
+    if (program.inactive) continue;
+    for (const {name, type} of program.inputs ?? []) {
+      if (!isPoseType(type)) continue;
+      const known = found.get(`${name} ${type}`);
+      if (known) known.programs.push(program.path);
+      else found.set(`${name} ${type}`, {topic: name, type, programs: [program.path]});
+    }
+  }
+  const first = (input: GoalInput): number => (isGoal(input) ? 0 : 1);
+  return [...found.values()].sort((a, b) => first(a) - first(b) || (a.topic < b.topic ? -1 : 1));
+}
+
+/** Where to go; else: where it is. */
+export function isGoal(input: GoalInput): boolean {
+  return input.type === 'geometry_msgs/msg/PoseStamped';
+}
+
+/** "goal_pose" of "/rover/goal_pose"; of its team's it is the whole, "/red/goal_pose". */
+export function inputName(input: GoalInput, robot: string): string {
+  const own = `/${robot}/`;
+  return input.topic.startsWith(own) ? input.topic.slice(own.length) : input.topic;
 }
 
 export class Goals {
-  /** Whom the next goal is for. */
+  /** Whom the next pose is for. */
   robot: string | null = null;
-  private stopGraph: (() => void) | null = null;
-  private publisher: {robot: string; publish: (value: unknown) => boolean; close: () => void} | null = null;
+  /** What it can be told, and which of these the next pose is. */
+  inputs: GoalInput[] = [];
+  input: GoalInput | null = null;
+  /** What can be told has changed while the tool is held. */
+  readonly onChange = new Signal();
+  private publisher: {key: string; publish: (value: unknown) => boolean; close: () => void} | null = null;
+  /** Name of what was chosen last: another robot is told the same if it can be. */
+  private chosen = '';
 
   constructor(private readonly client: Client, private readonly store: Store, private readonly scene: SceneView, private readonly layers: Layers,
               private readonly tell: (text: string, kind?: 'info' | 'warning') => void) {
     store.onEpoch.on(() => scene.showGoal(null));
+    // Controllers come and go while the run goes on.
+    store.onWorld.on(() => {
+      if (this.robot === null) return;
+      this.setInputs(goalInputs(store.world, this.robot));
+      this.onChange.emit();
+    });
   }
 
-  /** The tool is taken up. Resolves to null, or to why it is of no use, as a sentence. */
-  async begin(): Promise<string | null> {
+  /** The tool is taken up. Null, or why it is of no use, as a sentence. */
+  begin(): string | null {
     this.end();
-    const known = await this.listen();
-    const robots = (this.store.world?.instances ?? []).filter((i) => i.robot).map((i) => i.name);
-    const able = known ? robotsWithGoals(robots, this.client.graph.subscribedTopics) : robots;
+    const {world} = this.store;
+    const able = (world?.instances ?? []).filter((i) => i.robot && goalInputs(world, i.name).length > 0).map((i) => i.name);
     const selected = this.store.selected()?.instance;
-    if (selected?.robot) this.robot = selected.name;
-    else if (able.length === 1) this.robot = able[0] as string;
-    else return able.length === 0 ? 'No robot of this run takes goals: no program listens to a topic goal_pose.' : 'Select the robot that shall go somewhere first.';
-    return able.includes(this.robot) ? null : `${this.robot} takes no goals: none of its programs listens to ${goalTopic(this.robot)}.`;
+    const robot = selected?.robot ? selected.name : able.length === 1 ? (able[0] as string) : null;
+    if (robot === null) return able.length === 0 ? 'No robot of this run takes goals: no program that runs reads a topic of poses, such as goal_pose.' : 'Select the robot first that shall go somewhere.';
+    if (!able.includes(robot)) return `${robot} takes no goals: none of its programs that run reads a topic of poses, such as /${robot}/goal_pose.`;
+    this.robot = robot;
+    this.setInputs(goalInputs(world, robot));
+    this.layers.hold(robot);
+    return null;
   }
 
   /** The tool is put away; the flag stays. */
   end(): void {
-    this.stopGraph?.();
-    this.stopGraph = null;
-    this.robot = null;
+    this.robot = this.input = null;
+    this.inputs = [];
+    this.layers.hold(null);
+  }
+
+  choose(input: GoalInput): void {
+    this.chosen = inputName(input, this.robot ?? '');
+    this.input = input;
   }
 
   aim(aim: Aim): void {
-    const robot = this.robot;
-    if (aim.phase === 'cancel' || robot === null) {
+    const {robot, input} = this;
+    if (aim.phase === 'cancel' || robot === null || input === null) {
       this.scene.showGoal(null);
       return;
     }
@@ -59,38 +109,36 @@ export class Goals {
       return;
     }
     this.scene.showGoal(aim.at, yaw_rad);
-    const frame = this.layers.goalFrame(robot);
-    const message = goalMessage(frame, this.layers.framePose(frame, robot), aim.at, yaw_rad, this.store.time_s);
-    if (this.publisherOf(robot).publish(message)) this.tell(`${robot} is sent to ${aim.at[0].toFixed(2)}, ${aim.at[1].toFixed(2)} in ${frame}`);
-    else this.tell('The goal could not be sent', 'warning');
+    const frame = this.layers.goalFrame(robot, input.programs[0] ?? '');
+    const X_WF = this.layers.framePose(frame, robot);
+    const message = goalMessage(input.type, frame, X_WF, aim.at, yaw_rad, this.store.time_s) as {pose: {position?: {x: number; y: number}; pose?: {position: {x: number; y: number}}}};
+    if (!this.publisherOf(input).publish(message)) {
+      this.tell('The pose could not be sent', 'warning');
+      return;
+    }
+    const {x, y} = (message.pose.pose ?? message.pose).position as {x: number; y: number};
+    this.tell(`${robot} ${isGoal(input) ? 'is sent to' : 'is told that it is at'} ${x.toFixed(2)}, ${y.toFixed(2)}${frame === '' ? '' : ` in ${frame}`}`);
   }
 
-  /** Without a drag the robot arrives as it comes: from where it is. */
+  /** Without a drag the robot arrives as it comes: from where it is; and is turned as it is. */
   private usualYaw(robot: string, at: readonly number[]): number {
-    const from = this.scene.pose(robot)?.position ?? [0, 0, 0];
-    return Math.atan2((at[1] ?? 0) - from[1], (at[0] ?? 0) - from[0]);
+    const from = this.scene.pose(robot);
+    if (!from) return 0;
+    if (this.input && !isGoal(this.input)) return yawOf([0, 0, 0, ...from.quaternion], 0);
+    return Math.atan2((at[1] ?? 0) - from.position[1], (at[0] ?? 0) - from.position[0]);
   }
 
-  private publisherOf(robot: string): {publish: (value: unknown) => boolean} {
-    if (this.publisher?.robot !== robot) {
+  private setInputs(inputs: GoalInput[]): void {
+    this.inputs = inputs;
+    this.input = inputs.find((i) => i.topic === this.input?.topic && i.type === this.input.type) ?? inputs.find((i) => inputName(i, this.robot ?? '') === this.chosen) ?? inputs[0] ?? null;
+  }
+
+  private publisherOf(input: GoalInput): {publish: (value: unknown) => boolean} {
+    const key = `${input.topic} ${input.type}`;
+    if (this.publisher?.key !== key) {
       this.publisher?.close();
-      this.publisher = {robot, ...this.client.publisher(goalTopic(robot), 'geometry_msgs/msg/PoseStamped')};
+      this.publisher = {key, ...this.client.publisher(input.topic, input.type)};
     }
     return this.publisher;
-  }
-
-  /** Asks who listens to what. False: this server does not say. */
-  private listen(): Promise<boolean> {
-    if (!this.client.info?.capabilities.includes('connectionGraph')) return Promise.resolve(false);
-    return new Promise((resolve) => {
-      let timer: ReturnType<typeof setTimeout> | undefined = undefined;
-      // Kept while the tool is held. A page that shows the graph has it already, and then this is called at once.
-      this.stopGraph = this.client.subscribeGraph((graph) => {
-        if (graph.publishedTopics.size + graph.subscribedTopics.size === 0) return;
-        clearTimeout(timer);
-        resolve(true);
-      });
-      timer = setTimeout(() => resolve(false), answer_ms);
-    });
   }
 }

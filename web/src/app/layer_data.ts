@@ -1,6 +1,7 @@
 // What layers draw, made of messages: nothing here knows the page or the scene.
 import type {Drawing} from '../scene/overlays/layers';
 import type {Instance, Pose} from '../protocol';
+import {ellipseOf, spreadOf} from '../scene/ellipse';
 import {invert, multiply, transform, yawOf} from '../scene/poses';
 
 export type LayerKind = 'map' | 'path' | 'particles' | 'pose';
@@ -17,25 +18,6 @@ export function layerKindOf(type: string): LayerKind | null {
   const name = type.replace('/msg/', '/');
   return name === 'nav_msgs/OccupancyGrid' ? 'map' : name === 'nav_msgs/Path' ? 'path' : name === 'geometry_msgs/PoseArray' ? 'particles'
     : name === 'nav_msgs/Odometry' || name === 'geometry_msgs/PoseWithCovarianceStamped' ? 'pose' : null;
-}
-
-export interface Ellipse {
-  /** Semi-axes: two standard deviations. */
-  major_m: number;
-  minor_m: number;
-  /** Of the major axis, from x. */
-  turn_rad: number;
-}
-
-/** Two standard deviations of the horizontal position along its axes; null where the covariance says nothing. @param c  row-major 6x6 */
-export function ellipseOf(c: ArrayLike<number>): Ellipse | null {
-  const xx = c[0] ?? Number.NaN;
-  const xy = ((c[1] ?? Number.NaN) + (c[6] ?? Number.NaN)) / 2;
-  const yy = c[7] ?? Number.NaN;
-  const middle = (xx + yy) / 2;
-  const half = Math.hypot((xx - yy) / 2, xy);
-  if (!Number.isFinite(middle + half) || xx < 0 || yy < 0 || middle + half <= 0) return null;
-  return {major_m: 2 * Math.sqrt(middle + half), minor_m: 2 * Math.sqrt(Math.max(0, middle - half)), turn_rad: 0.5 * Math.atan2(2 * xy, xx - yy)};
 }
 
 export interface Made {
@@ -87,7 +69,8 @@ function posesOf(kind: 'path' | 'particles', poses: readonly RosPose[]): Made {
   let count = 0;
   for (const pose of kept) if (poseOf(pose, values, 7 * count)) ++count;
   const what = kind === 'path' ? 'poses' : 'particles';
-  const note = kept.length < poses.length ? `${kept.length} of ${poses.length} ${what} are drawn` : count < kept.length ? `${kept.length - count} ${what} are not finite` : '';
+  const bad = kept.length - count;
+  const note = [kept.length < poses.length ? `${kept.length} of ${poses.length} ${what} are drawn` : '', bad > 0 ? `${bad} of them ${bad === 1 ? 'is' : 'are'} not finite and left out` : ''].filter((text) => text !== '').join('; ');
   return {drawing: {kind, poses: values.subarray(0, 7 * count)}, info: `${poses.length} ${poses.length === 1 ? what.slice(0, -1) : what}`, note};
 }
 
@@ -107,20 +90,24 @@ export function drawingOf(kind: LayerKind, value: unknown, side_max = 16384): Ma
     const size = `${width} × ${height}, ${metres(resolution)}`;
     if (width * height > cells_max) return nothing(`Not drawn: ${width} × ${height} cells are more than ${cells_max / 1e6} million`);
     if (Math.max(width, height) > side_max) return nothing(`Not drawn: a side of ${Math.max(width, height)} cells; this browser draws ${side_max}`);
-    if (width * height === 0 || data.length !== width * height || !(resolution > 0)) return nothing(`Not drawn: ${data.length} cells for ${size}`);
+    if (width * height === 0) return nothing(`Not drawn: a map of ${width} × ${height} cells`);
+    if (!(resolution > 0) || !Number.isFinite(resolution)) return nothing(`Not drawn: its cells have a side of ${resolution} m`);
+    if (data.length !== width * height) return nothing(`Not drawn: ${data.length} cells for ${size}`);
     if (!poseOf(info.origin, place, 0)) return nothing('Not drawn: its origin is not finite');
     const cells = data instanceof Int8Array ? new Uint8Array(data.buffer, data.byteOffset, data.length) : Uint8Array.from(data as number[], (v) => v & 255);
     return {drawing: {kind: 'map', width, height, resolution_m: resolution, origin: place, cells}, info: size, note: ''};
   }
   const with_covariance = message.pose as {pose: RosPose; covariance: ArrayLike<number>} | undefined;
   if (!with_covariance || !poseOf(with_covariance.pose, place, 0)) return nothing('Not drawn: its position is not finite');
-  const covariance = with_covariance.covariance ?? [];
-  const ellipse = ellipseOf(covariance);
-  const unknown = ellipse !== null && ellipse.major_m > known_m;
-  const heading_rad = 2 * Math.sqrt(covariance[35] ?? 0);
+  const all = with_covariance.covariance ?? [];
+  const {covariance, why} = spreadOf(all);
+  const deviation_m = covariance === null ? 0 : ellipseOf(covariance[0] as number, covariance[1] as number, covariance[4] as number).major_m;
+  const unknown = deviation_m > known_m;
+  const heading_rad = 2 * Math.sqrt(all[35] ?? 0);
   return {
-    drawing: {kind: 'pose', pose: place, ellipse: unknown ? null : ellipse, heading_rad: heading_rad > 0 && heading_rad < Math.PI / 2 ? heading_rad : 0},
-    info: ellipse === null ? '' : unknown ? 'unsure' : `± ${metres(ellipse.major_m)}`, note: '',
+    drawing: {kind: 'pose', pose: place, covariance: unknown ? null : covariance, heading_rad: heading_rad > 0 && heading_rad < Math.PI / 2 ? heading_rad : 0},
+    info: why !== '' ? 'no ellipse' : covariance === null ? '' : unknown ? 'unsure' : `± ${metres(deviation_m)}`,
+    note: why === '' ? '' : `Drawn without an ellipse: ${why}`,
   };
 }
 
@@ -146,16 +133,18 @@ export function sameContent(a: Uint8Array | null, b: Uint8Array): boolean {
 
 // --- frames
 
-/** Where a frame's origin is: in the world's, on a body of it, or where the robot was when it began. */
-export type Place = 'world' | 'start' | 'body';
+/** Where a frame's origin is: in the world's, on a body of it, where the robot was when it began, or as a TransformStamped says. */
+export type Place = 'world' | 'start' | 'body' | 'told';
 
 /**
  * The world has the frames `world`, `<robot>/<link>` and `<robot>/<device>`. Others are what programs count from: `odom` is where the robot
- * began; any other is the world's if maps or particles are given in it, since those are made of the world, else it begins with the robot too.
+ * began, unless a program tells where it is, as one that localises does; any other is the world's if maps or particles are given in it, since
+ * those are made of the world, else it begins with the robot too.
  */
-export function placeOf(frame: string, owner: Instance | null, bodies: (frame: string) => boolean, has_map: boolean): Place {
+export function placeOf(frame: string, owner: Instance | null, bodies: (frame: string) => boolean, has_map: boolean, is_told = false): Place {
   if (frame === '' || frame === 'world') return 'world';
   if (bodies(frame)) return 'body';
+  if (is_told) return 'told';
   if (!owner?.start) return 'world';
   const last = frame.slice(frame.lastIndexOf('/') + 1);
   return /^odom/.test(last) || !has_map ? 'start' : 'world';
@@ -177,8 +166,36 @@ export function startOf(start: Pose | undefined, first_link: Pose | undefined, t
   return out;
 }
 
-/** A goal on the ground as geometry_msgs/PoseStamped in a frame that lies at `X_WF`. */
-export function goalMessage(frame_id: string, X_WF: Float64Array, at: readonly number[], yaw_rad: number, time_s: number): unknown {
+/** What a geometry_msgs/TransformStamped tells of its child frame. */
+export interface Told {
+  parent: string;
+  child: string;
+  pose: Float64Array;
+}
+
+/** Null: it tells nothing that can be used. */
+export function toldOf(value: unknown): Told | null {
+  const {header, child_frame_id, transform} = (value ?? {}) as {header?: {frame_id?: string}; child_frame_id?: string; transform?: {translation: RosPose['position']; rotation: RosPose['orientation']}};
+  if (!header?.frame_id || !child_frame_id || header.frame_id === child_frame_id || !transform) return null;
+  const pose = new Float64Array(7);
+  return poseOf({position: transform.translation, orientation: transform.rotation}, pose, 0) ? {parent: header.frame_id, child: child_frame_id, pose} : null;
+}
+
+// --- goals
+
+/** Topics that people may give a pose on. */
+export type PoseType = 'geometry_msgs/msg/PoseStamped' | 'geometry_msgs/msg/PoseWithCovarianceStamped';
+
+export function isPoseType(type: string): type is PoseType {
+  return type === 'geometry_msgs/msg/PoseStamped' || type === 'geometry_msgs/msg/PoseWithCovarianceStamped';
+}
+
+/** How unsure a place is that somebody has pointed at: 0.5 m, 15 degrees, as RViz says. */
+const pointed_variance_m2 = 0.25;
+const pointed_variance_rad2 = 0.06853891945200942;
+
+/** A pose on the ground as a message of a type, in a frame that lies at `X_WF`. */
+export function goalMessage(type: PoseType, frame_id: string, X_WF: Float64Array, at: readonly number[], yaw_rad: number, time_s: number): unknown {
   const X_FW = new Float64Array(7);
   invert(X_WF, 0, X_FW, 0);
   const point = [0, 0, 0];
@@ -187,8 +204,11 @@ export function goalMessage(frame_id: string, X_WF: Float64Array, at: readonly n
   multiply(X_FW, 0, [0, 0, 0, Math.cos(yaw_rad / 2), 0, 0, Math.sin(yaw_rad / 2)], 0, turned, 0);
   const yaw = yawOf(turned, 0);
   const sec = Math.floor(time_s);
-  return {
-    header: {stamp: {sec, nanosec: Math.floor((time_s - sec) * 1e9)}, frame_id},
-    pose: {position: {x: point[0], y: point[1], z: point[2]}, orientation: {x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2)}},
-  };
+  const header = {stamp: {sec, nanosec: Math.floor((time_s - sec) * 1e9)}, frame_id};
+  const pose = {position: {x: point[0], y: point[1], z: point[2]}, orientation: {x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2)}};
+  if (type === 'geometry_msgs/msg/PoseStamped') return {header, pose};
+  const covariance = new Array<number>(36).fill(0);
+  covariance[0] = covariance[7] = pointed_variance_m2;
+  covariance[35] = pointed_variance_rad2;
+  return {header, pose: {pose, covariance}};
 }

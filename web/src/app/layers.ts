@@ -5,7 +5,8 @@ import {Signal} from '../net/signal';
 import type {Instance} from '../protocol';
 import {LAYER_COLORS} from '../scene/overlays/layers';
 import type {Drawing, SceneView} from '../scene/scene';
-import {drawingOf, layerKindOf, LayerKind, Place, placeOf, sameContent, startOf, tooLong} from './layer_data';
+import {drawingOf, layerKindOf, LayerKind, Place, placeOf, sameContent, startOf, Told, toldOf, tooLong} from './layer_data';
+import {multiply} from '../scene/poses';
 import {remember, remembered} from './settings';
 import type {Store} from './store';
 
@@ -33,6 +34,8 @@ interface Running extends Layer {
   latest: Message | null;
   bytes: Uint8Array | null;
   drawing: Drawing | null;
+  /** Whether the scene has it. */
+  seen: boolean;
 }
 
 /** Robots and topics beyond these are left out until one is selected. */
@@ -54,6 +57,10 @@ export class Layers {
   private readonly places = remembered<Record<string, Place>>('layer_frames', {});
   private shown = true;
   private flushing = 0;
+  /** The robot whose layers are read though they may be switched off: where its frames are is wanted. */
+  private held: string | null = null;
+  /** Topics of type TransformStamped with what they said last. */
+  private readonly transforms = new Map<string, {owner: string; stop: () => void; latest: Message | null; told: Told | null}>();
 
   constructor(private readonly client: Client, private readonly store: Store, private readonly scene: SceneView) {
     client.onChannels.on(() => this.update());
@@ -73,6 +80,13 @@ export class Layers {
     this.update();
   }
 
+  /** The layers of a robot are read, seen or not, until another one is held; null: of none. */
+  hold(robot: string | null): void {
+    if (robot === this.held) return;
+    this.held = robot;
+    this.update();
+  }
+
   toggle(topic: string): void {
     const layer = this.running.get(topic);
     if (!layer) return;
@@ -82,9 +96,9 @@ export class Layers {
   }
 
   /** Frames of the layers that are drawn and are not the world's own, with where they are. */
-  frames(owner: string): {frame: string; place: Place}[] {
+  frames(owner: string): {frame: string; place: Place; told: boolean}[] {
     const names = new Set([...this.running.values()].filter((l) => l.owner === owner && l.frame !== null).map((l) => l.frame as string));
-    return [...names].sort().map((frame) => ({frame, place: this.placeOf(frame, owner)})).filter(({place, frame}) => place !== 'body' && frame !== '' && frame !== 'world');
+    return [...names].sort().map((frame) => ({frame, place: this.placeOf(frame, owner), told: this.told(frame, owner) !== null})).filter(({place, frame}) => place !== 'body' && frame !== '' && frame !== 'world');
   }
 
   /** For frames of which the page cannot know where they are. */
@@ -95,20 +109,27 @@ export class Layers {
     this.onChange.emit();
   }
 
-  /** The frame in which a robot is told goals: that of its map, else of what it says with a map; else the world. */
-  goalFrame(robot: string): string {
+  /**
+   * The frame in which a program is told poses: that of its own map, else of its robot's, else of what else it says that is not from odometry.
+   * Empty where nothing is known: by ROS's convention that is the frame of the program's own, and the world's as far as the page knows.
+   */
+  goalFrame(robot: string, program: string): string {
     const of = [...this.running.values()].filter((l) => l.owner === robot && l.frame !== null && l.frame !== '' && !/(^|\/)odom/.test(l.frame) && this.placeOf(l.frame, robot) !== 'body');
-    for (const kind of ['map', 'particles'] as const) {
-      const found = of.find((l) => l.kind === kind);
-      if (found) return found.frame as string;
-    }
-    return 'world';
+    const own = of.filter((l) => l.topic.startsWith(`/${program}/`));
+    const maps = (l: Running): boolean => l.kind === 'map' || l.kind === 'particles';
+    return (own.find(maps) ?? of.find(maps) ?? own[0])?.frame ?? '';
   }
 
   /** Pose of a frame in the world. @param topic  of a message in it: of its program depends what "upright" is */
-  framePose(frame: string, owner: string, topic = ''): Float64Array {
+  framePose(frame: string, owner: string, topic = '', most_parents = 4): Float64Array {
     const place = this.placeOf(frame, owner);
     if (place === 'body') return this.scene.framePose(frame) ?? startOf(undefined, undefined);
+    const told = place === 'told' ? this.told(frame, owner) : null;
+    if (told && most_parents > 0) {
+      const out = new Float64Array(7);
+      multiply(this.framePose(told.parent, owner, '', most_parents - 1), 0, told.pose, 0, out, 0);
+      return out;
+    }
     const instance = this.store.instance(owner);
     if (place === 'world' || !instance) return startOf(undefined, undefined);
     const link = this.store.world?.models.find((m) => m.id === instance.model)?.links[0];
@@ -119,9 +140,37 @@ export class Layers {
 
   private placeOf(frame: string, owner: string): Place {
     const chosen = this.places[frame];
-    if (chosen !== undefined && this.scene.framePose(frame) === null) return chosen;
+    const is_told = this.told(frame, owner) !== null;
+    if (chosen !== undefined && (chosen !== 'told' || is_told) && this.scene.framePose(frame) === null) return chosen;
     const has_map = [...this.running.values()].some((l) => l.frame === frame && (l.kind === 'map' || l.kind === 'particles'));
-    return placeOf(frame, this.store.instance(owner) ?? null, (f) => this.scene.framePose(f) !== null, has_map);
+    return placeOf(frame, this.store.instance(owner) ?? null, (f) => this.scene.framePose(f) !== null, has_map, is_told);
+  }
+
+  private told(frame: string, owner: string): Told | null {
+    for (const each of this.transforms.values()) if (each.owner === owner && each.told?.child === frame) return each.told;
+    return null;
+  }
+
+  /** Listens to transforms that programs of these robots publish. */
+  private listenToTransforms(owners: Set<string>): void {
+    const wanted = new Map<string, string>();
+    for (const channel of this.client.channels.values()) {
+      const first = channel.topic.split('/')[1] ?? '';
+      if (channel.schemaName.replace('/msg/', '/') === 'geometry_msgs/TransformStamped' && owners.has(first)) wanted.set(channel.topic, first);
+    }
+    for (const [topic, each] of this.transforms) if (!wanted.has(topic)) {
+      each.stop();
+      this.transforms.delete(topic);
+    }
+    for (const [topic, owner] of wanted) {
+      if (this.transforms.has(topic)) continue;
+      const each = {owner, stop: () => undefined as void, latest: null as Message | null, told: null as Told | null};
+      this.transforms.set(topic, each);
+      each.stop = this.client.subscribe(topic, (message) => {
+        each.latest = message;
+        this.soon();
+      });
+    }
   }
 
   private update(): void {
@@ -147,17 +196,18 @@ export class Layers {
     const next = list.map((layer) => {
       let run = this.running.get(layer.topic);
       if (!run) {
-        run = {...layer, stop: null, latest: null, bytes: null, drawing: null};
+        run = {...layer, stop: null, latest: null, bytes: null, drawing: null, seen: false};
         this.running.set(layer.topic, run);
       }
       const recolored = run.color !== layer.color;
       Object.assign(run, {on: layer.on, color: layer.color, label: layer.label});
-      const wants = this.shown && run.on;
+      const wants = this.sees(run) || (run.owner === this.held && run.owner !== '');
       if (wants && !run.stop) this.begin(run);
       else if (!wants && run.stop) this.halt(run);
-      else if (recolored && run.drawing) this.draw(run);
+      else if (run.drawing && (recolored || run.seen !== this.sees(run))) this.draw(run);
       return run;
     });
+    this.listenToTransforms(new Set(next.filter((l) => l.stop).map((l) => l.owner).filter((owner) => owner !== '')));
     this.list = next;
     this.onChange.emit();
   }
@@ -175,16 +225,24 @@ export class Layers {
     return this.switched[`${kind} ${label}`] ?? onFirst(kind, of_device);
   }
 
+  private sees(layer: Layer): boolean {
+    return this.shown && layer.on;
+  }
+
   private begin(layer: Running): void {
     layer.stop = this.client.subscribe(layer.topic, (message) => {
       layer.latest = message;
-      if (this.flushing === 0) this.flushing = requestAnimationFrame(() => this.flush());
+      this.soon();
     });
+  }
+
+  private soon(): void {
+    if (this.flushing === 0) this.flushing = requestAnimationFrame(() => this.flush());
   }
 
   private halt(layer: Running): void {
     layer.stop?.();
-    Object.assign(layer, {stop: null, latest: null, bytes: null, drawing: null, info: '', note: ''});
+    Object.assign(layer, {stop: null, latest: null, bytes: null, drawing: null, seen: false, info: '', note: ''});
     this.scene.setLayer(layer.topic, null, startOf(undefined, undefined), 0);
   }
 
@@ -199,12 +257,13 @@ export class Layers {
       this.halt(layer);
       this.begin(layer);
     }
+    for (const each of this.transforms.values()) each.latest = each.told = null;
     this.onChange.emit();
   }
 
   private flush(): void {
     this.flushing = 0;
-    let told = false;
+    let told = this.takeTransforms();
     for (const layer of this.running.values()) {
       const message = layer.latest;
       layer.latest = null;
@@ -215,6 +274,24 @@ export class Layers {
       told ||= before !== `${layer.frame} ${layer.info} ${layer.note}`;
     }
     if (told) this.onChange.emit();
+  }
+
+  /** @return whether there is a frame of which nothing was told before */
+  private takeTransforms(): boolean {
+    const moved = new Set<string>();
+    let fresh = false;
+    for (const each of this.transforms.values()) {
+      if (each.latest === null) continue;
+      const told = toldOf(each.latest.value());
+      each.latest = null;
+      if (told === null) continue;
+      fresh ||= each.told?.child !== told.child;
+      if (each.told?.child === told.child && each.told.parent === told.parent && each.told.pose.every((v, i) => v === told.pose[i])) continue;
+      each.told = told;
+      moved.add(`${each.owner} ${told.child}`);
+    }
+    for (const layer of this.running.values()) if (layer.drawing && layer.frame !== null && moved.has(`${layer.owner} ${layer.frame}`)) this.draw(layer);
+    return fresh;
   }
 
   private take(layer: Running, message: Message): void {
@@ -230,7 +307,8 @@ export class Layers {
   }
 
   private draw(layer: Running): void {
-    this.scene.setLayer(layer.topic, layer.drawing, this.framePose(layer.frame ?? '', layer.owner, layer.topic), layer.color);
+    layer.seen = this.sees(layer);
+    this.scene.setLayer(layer.topic, layer.seen ? layer.drawing : null, this.framePose(layer.frame ?? '', layer.owner, layer.topic), layer.color);
   }
 
   private placeAll(): void {

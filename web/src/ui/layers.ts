@@ -107,8 +107,9 @@ export class LayersLegend {
 
   private openFrames(at: HTMLElement, owner: string): void {
     const frames = this.layers.frames(owner);
-    openMenu(at, frames.length === 0 ? [{heading: 'All frames are known'}] : frames.flatMap(({frame, place}) => [
+    openMenu(at, frames.length === 0 ? [{heading: 'All frames are known'}] : frames.flatMap(({frame, place, told}) => [
       {heading: frame},
+      ...(told ? [{label: 'Where a program says', checked: place === 'told', run: () => this.layers.setPlace(frame, 'told')}] : []),
       {label: `Where ${owner} began`, checked: place === 'start', run: () => this.layers.setPlace(frame, 'start')},
       {label: 'The world’s', checked: place === 'world', run: () => this.layers.setPlace(frame, 'world')},
     ]));

@@ -1,7 +1,7 @@
 // What floats over the scene: tools, cameras, overlays, video; the stick and the note of the robot that is driven; the veil while there
 // is not a connection.
 import type {Context} from '../app/context';
-import type {Goals} from '../app/goals';
+import {Goals, inputName, isGoal} from '../app/goals';
 import {remember, remembered} from '../app/settings';
 import {h, setReason, setText} from './dom';
 import {icon} from './icons';
@@ -69,6 +69,10 @@ export class SceneTools {
     store.onSelection.on(() => {
       if (this.tool === 'goal') this.beginGoal();
     });
+    goals.onChange.on(() => {
+      if (this.tool === 'goal' && goals.input === null) this.beginGoal();
+      this.show();
+    });
     client.onState.on(() => this.showVeil());
     teleop.onChange.on(() => this.show());
     video.onChange = () => this.show();
@@ -95,15 +99,28 @@ export class SceneTools {
     if (this.tool === 'goal') this.beginGoal();
   }
 
+  /** What a press in the scene does now, and what else it could tell the robot. */
+  private showGoalBanner(robot: string): void {
+    const {goals} = this;
+    const {input} = goals;
+    const choices = goals.inputs.length < 2 ? [] : goals.inputs.map((each) => h('button', {
+      class: 'plain small', 'aria-pressed': String(each === input), title: `${each.topic} (${each.type}), read by ${each.programs.join(' and ')}`, testid: `goal-${inputName(each, robot)}`,
+      on: {click: () => {
+        goals.choose(each);
+        this.show();
+      }},
+    }, inputName(each, robot)));
+    this.banner.replaceChildren(icon('flag'), h('span', {}, 'Press where ', h('b', {}, robot), input === null || isGoal(input) ? ' shall go' : ' is', ', drag for the heading'),
+        ...choices, h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Done'));
+  }
+
   private beginGoal(): void {
-    void this.goals.begin().then((why) => {
-      if (this.tool !== 'goal') return;
-      if (why !== null) {
-        this.context.toast(why, 'warning');
-        this.setTool('orbit');
-      }
-      this.show();
-    });
+    const why = this.goals.begin();
+    if (why !== null) {
+      this.context.toast(why, 'warning');
+      this.setTool('orbit');
+    }
+    this.show();
   }
 
   /** The next click in the scene says where. */
@@ -158,7 +175,7 @@ export class SceneTools {
       this.banner.replaceChildren(h('span', {}, `Click where ${this.placing.what} shall stand`), h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Cancel'));
     } else if (sends !== null) {
       this.banner.classList.remove('armed');
-      this.banner.replaceChildren(icon('flag'), h('span', {}, 'Press where ', h('b', {}, sends), ' shall go, drag for the heading'), h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Done'));
+      this.showGoalBanner(sends);
     } else if (armed !== null) {
       const how = this.teleop.gamepad ? 'gamepad, W A S D or stick' : 'W A S D, arrows or stick';
       this.banner.replaceChildren(icon('gamepad'), h('span', {}, 'Driving ', h('b', {}, armed)), h('span', {class: 'dim how'}, how), h('button', {class: 'small', on: {click: () => this.teleop.disarm()}}, 'Stop'));

@@ -4,6 +4,7 @@
 //          over hills too; other heights are kept.
 // Cost     a drawing is placed when it, its frame or the terrain has changed; nothing is done per frame.
 import * as THREE from 'three';
+import { groundEllipse } from '../ellipse';
 import { multiply, transform, yawOf } from '../poses';
 import type { Terrain } from '../terrain';
 import { Darts } from './darts';
@@ -14,7 +15,8 @@ export type Drawing =
   | { kind: 'map'; width: number; height: number; resolution_m: number; origin: Float64Array; cells: Uint8Array }
   /** Seven numbers per pose, as a Pose. */
   | { kind: 'path' | 'particles'; poses: Float64Array }
-  | { kind: 'pose'; pose: Float64Array; ellipse: { major_m: number; minor_m: number; turn_rad: number } | null; heading_rad: number };
+  /** Nine numbers of the position's covariance; null: not known. */
+  | { kind: 'pose'; pose: Float64Array; covariance: Float64Array | null; heading_rad: number };
 
 /** Colours of layers that have one, for a light and a dark page: told apart next to each other, and on grey, earth and grass. */
 export const LAYER_COLORS: readonly [light: string, dark: string][] = [
@@ -200,7 +202,7 @@ export class Layers {
     shown.darts.set(values);
   }
 
-  private placePose(shown: Shown, { pose, ellipse, heading_rad }: Extract<Drawing, { kind: 'pose' }>): void {
+  private placePose(shown: Shown, { pose, covariance, heading_rad }: Extract<Drawing, { kind: 'pose' }>): void {
     const darts = (shown.darts ??= new Darts(this.group, 1, shown.color, shown.order + 2, POSE_M, POSE_PX));
     multiply(shown.frame, 0, pose, 0, this.at, 0);
     const yaw = yawOf(this.at, 0);
@@ -209,9 +211,9 @@ export class Layers {
     darts.set([x, y, z, yaw]);
     const ribbons = (shown.ribbons ??= new Ribbons(this.group, shown.color, shown.order));
     ribbons.begin();
+    const ellipse = covariance && groundEllipse(covariance, shown.frame);
     if (ellipse) {
-      const turn = ellipse.turn_rad + yawOf(shown.frame, 0);
-      const [c, s] = [Math.cos(turn), Math.sin(turn)];
+      const [c, s] = [Math.cos(ellipse.turn_rad), Math.sin(ellipse.turn_rad)];
       // One that is nearly a line, or a point, is still seen.
       const a = Math.max(ellipse.major_m, 0.01), b = Math.max(ellipse.minor_m, 0.01);
       const edge = (i: number): [number, number] => {

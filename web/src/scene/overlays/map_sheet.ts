@@ -17,17 +17,17 @@ export class MapSheet {
    * @param place  from metres in the sheet to a point of the world
    */
   set(width: number, height: number, resolution_m: number, cells: Uint8Array, place: (x_m: number, y_m: number, out: number[]) => void, folded: boolean): void {
-    const before = this.mesh?.material.uniforms.cells.value as THREE.DataTexture | undefined;
-    let texture = before;
-    if (before && before.image.width === width && before.image.height === height) {
-      before.image.data = cells;
-    } else {
-      before?.dispose();
-      texture = new THREE.DataTexture(cells, width, height, THREE.RedFormat, THREE.UnsignedByteType);
-    }
-    texture!.needsUpdate = true;
     this.mesh ??= this.make();
-    this.mesh.material.uniforms.cells.value = texture;
+    const uniform = this.mesh.material.uniforms.cells as { value: THREE.DataTexture | null };
+    let texture = uniform.value;
+    if (texture === null || texture.image.width !== width || texture.image.height !== height) {
+      texture?.dispose();
+      texture = uniform.value = new THREE.DataTexture(cells, width, height, THREE.RedFormat, THREE.UnsignedByteType);
+      texture.needsUpdate = true;
+    } else if (texture.image.data !== cells) {
+      texture.image.data = cells;
+      texture.needsUpdate = true;
+    }
     const folds = folded ? FOLDS : 1;
     const geometry = new THREE.PlaneGeometry(1, 1, folds, folds);
     const position = geometry.getAttribute('position') as THREE.BufferAttribute;
