@@ -198,7 +198,7 @@ if(SANDLOT_NODE AND EXISTS ${CMAKE_SOURCE_DIR}/tests/js/node_modules)
       ENVIRONMENT "SANDLOT_BUILD=${CMAKE_BINARY_DIR};SANDLOT_BIN=${CMAKE_BINARY_DIR}/sandlot")
   endforeach()
   # A browser that draws with the processor takes its time; beside other tests it would wait in vain.
-  set_tests_properties(js_page_test js_panel_test js_agents_test js_match_page_test PROPERTIES LABELS slow TIMEOUT 600 RUN_SERIAL ON)
+  set_tests_properties(js_page_test js_layers_test js_panel_test js_agents_test js_match_page_test PROPERTIES LABELS slow TIMEOUT 600 RUN_SERIAL ON)
 else()
   message(STATUS "No node or no tests/js/node_modules (npm ci --prefix tests/js): the tests in tests/js are left out")
 endif()

@@ -69,6 +69,7 @@ TEST(World, TellsWhichTopicsOfClientsProgramsRead) {
   ASSERT_TRUE(made) << made.error().text();
   WorldJsonWriter writer{Assets()};
   const Json world = Json::parse(writer.write(**made, 1));
+  EXPECT_FALSE(world["instances"].front().contains("start")) << "of robots only";
   const Json& programs = world["instances"].back()["controllers"];
   EXPECT_FALSE(programs[0].contains("inputs")) << programs[0];
   EXPECT_EQ(programs[1], Json::parse(R"({"name":"way","path":"rover1/way","kind":"goer",

@@ -263,6 +263,7 @@ export class Layers {
 
   private flush(): void {
     this.flushing = 0;
+    const begin_ms = performance.now();
     let told = this.takeTransforms();
     for (const layer of this.running.values()) {
       const message = layer.latest;
@@ -273,6 +274,7 @@ export class Layers {
       this.take(layer, message);
       told ||= before !== `${layer.frame} ${layer.info} ${layer.note}`;
     }
+    this.scene.addScript(performance.now() - begin_ms);
     if (told) this.onChange.emit();
   }
 

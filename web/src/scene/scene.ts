@@ -377,10 +377,13 @@ export class SceneView {
 
   /** Draws a layer, or takes it away. @param frame  pose of its frame in the world */
   setLayer(id: string, drawing: Drawing | null, frame: Float64Array, color_index: number): void {
-    const begin_ms = performance.now();
     this.layers.set(id, drawing, frame, color_index);
-    this.meter.addScript(performance.now() - begin_ms);
     this.invalidate();
+  }
+
+  /** Time that was spent for the next frame outside of the scene, such as on reading messages. */
+  addScript(ms: number): void {
+    this.meter.addScript(ms);
   }
 
   /** How often layers were placed: nothing is when nothing has changed. */
