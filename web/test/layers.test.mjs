@@ -7,6 +7,7 @@ const { ellipseOf, groundEllipse, spreadOf } = await load('scene/ellipse.ts');
 const data = await load('app/layer_data.ts');
 const { drawingOf, goalMessage, layerKindOf, placeOf, sameContent, startOf, thinned, toldOf, tooLong } = data;
 const { goalInputs, inputName } = await load('app/goals.ts');
+const { levelOf, onFirst } = await load('app/layers.ts');
 const { decoderFor } = await load('net/decoders.ts');
 
 const near = (actual, expected, tolerance = 1e-12) => assert.ok(Math.abs(actual - expected) <= tolerance, `${actual} instead of ${expected}`);
@@ -242,4 +243,11 @@ test('a robot is told what programs of its own and its team read while they run'
   assert.deepEqual(goalInputs(world, 'bob'), []);
   assert.deepEqual(goalInputs(world, 'wall'), []);
   assert.deepEqual(goalInputs(null, 'ann'), []);
+});
+
+test('levels of devices that do not measure are no layers', () => {
+  const rover = { name: 'rover', devices: [{ path: 'rover/gps', active: ['fix'], topics: [{ name: '/rover/gps/fix', type: 'x', level: 'fix' }, { name: '/rover/gps/pose', type: 'x', level: 'pose' }, { name: '/rover/gps/any', type: 'x', level: '' }] }] };
+  assert.deepEqual(['/rover/gps/fix', '/rover/gps/pose', '/rover/gps/any', '/rover/estimator/odometry'].map((topic) => levelOf(rover, topic)), ['active', 'inactive', 'active', null]);
+  assert.equal(levelOf(undefined, '/rover/gps/fix'), null);
+  assert.deepEqual([onFirst('pose', true), onFirst('pose', false), onFirst('map', true)], [false, true, true]);
 });

@@ -179,9 +179,11 @@ export class Layers {
       if (kind === null) return [];
       const first = channel.topic.split('/')[1] ?? '';
       const instance = this.store.instance(first);
+      const of_device = levelOf(instance, channel.topic);
+      if (of_device === 'inactive') return [];
       const owner = instance?.robot ? first : '';
       const label = channel.topic.slice(owner === '' ? 1 : owner.length + 2);
-      return [{topic: channel.topic, type: channel.schemaName, kind, owner, label, on: this.isOn(kind, label, instance, channel.topic), color: 0, frame: null, info: '', note: ''}];
+      return [{topic: channel.topic, type: channel.schemaName, kind, owner, label, on: this.isOn(kind, label, of_device === 'active'), color: 0, frame: null, info: '', note: ''}];
     }).sort((a, b) => (a.owner === b.owner ? order[a.kind] - order[b.kind] || (a.label < b.label ? -1 : 1) : a.owner < b.owner ? -1 : 1));
     const list = this.choose(found);
     const taken = new Map<string, number>();
@@ -220,8 +222,7 @@ export class Layers {
     return found.filter((l) => l.owner === '' || wanted.includes(l.owner)).slice(0, 2 * layers_max);
   }
 
-  private isOn(kind: LayerKind, label: string, instance: Instance | undefined, topic: string): boolean {
-    const of_device = (instance?.devices ?? []).some((d) => (d.topics ?? []).some((t) => t.name === topic));
+  private isOn(kind: LayerKind, label: string, of_device: boolean): boolean {
     return this.switched[`${kind} ${label}`] ?? onFirst(kind, of_device);
   }
 
@@ -319,6 +320,15 @@ export class Layers {
 }
 
 const order: Record<LayerKind, number> = {map: 0, path: 1, particles: 2, pose: 3};
+
+/** Whether a topic is of a device, and then of a level that measures now: others have nothing to say. */
+export function levelOf(instance: Instance | undefined, topic: string): 'active' | 'inactive' | null {
+  for (const device of instance?.devices ?? []) {
+    const found = (device.topics ?? []).find((t) => t.name === topic);
+    if (found) return found.level === '' || device.active.includes(found.level) ? 'active' : 'inactive';
+  }
+  return null;
+}
 
 function keyOf(layer: Layer): string {
   return `${layer.kind} ${layer.label}`;
