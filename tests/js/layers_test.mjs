@@ -81,7 +81,7 @@ after(async () => {
 async function lookDown() {
   await page.evaluate(() => {
     const { scene } = window.sandlot;
-    scene.setMode("top");
+    scene.setCamera("top");
     scene.setOverlays({ names: false, trails: false });
     const { goal } = scene.rig;
     goal.target.set(0, 0, 0);

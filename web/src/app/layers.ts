@@ -201,12 +201,13 @@ export class Layers {
         run = {...layer, stop: null, latest: null, bytes: null, drawing: null, seen: false};
         this.running.set(layer.topic, run);
       }
-      const recolored = run.color !== layer.color;
-      Object.assign(run, {on: layer.on, color: layer.color, label: layer.label});
+      // Topics may be known before the world is, and with it whose they are.
+      const other = run.color !== layer.color || run.owner !== layer.owner;
+      Object.assign(run, {on: layer.on, color: layer.color, label: layer.label, owner: layer.owner});
       const wants = this.sees(run) || (run.owner === this.held && run.owner !== '');
       if (wants && !run.stop) this.begin(run);
       else if (!wants && run.stop) this.halt(run);
-      else if (run.drawing && (recolored || run.seen !== this.sees(run))) this.draw(run);
+      else if (run.drawing && (other || run.seen !== this.sees(run))) this.draw(run);
       return run;
     });
     this.listenToTransforms(new Set(next.filter((l) => l.stop).map((l) => l.owner).filter((owner) => owner !== '')));

@@ -72,7 +72,7 @@ export class LayersLegend {
     const {list, hidden} = this.layers;
     this.element.hidden = !this.wanted || list.length === 0;
     if (this.element.hidden) return;
-    const wanted = JSON.stringify([list.map((l) => [l.topic, l.color]), hidden]);
+    const wanted = JSON.stringify([list.map((l) => [l.topic, l.owner, l.color]), hidden]);
     if (wanted !== this.built) {
       this.built = wanted;
       this.build();

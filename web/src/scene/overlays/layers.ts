@@ -36,8 +36,9 @@ const POSE_ABOVE_M = 0.03;
 const ELLIPSE_STEPS = 72;
 const FAN_STEPS = 16;
 const FAN_M = 1.1;
-const POSE_M = 0.55;
-const POSE_PX = 20;
+const POSE_M = 0.7;
+const POSE_PX = 24;
+const POSE_SHRINK = 0.82;
 const PARTICLE_M = 0.16;
 const PARTICLE_PX = 6;
 const MOST_PARTICLES = 5_000;
@@ -203,7 +204,9 @@ export class Layers {
   }
 
   private placePose(shown: Shown, { pose, covariance, heading_rad }: Extract<Drawing, { kind: 'pose' }>): void {
-    const darts = (shown.darts ??= new Darts(this.group, 1, shown.color, shown.order + 2, POSE_M, POSE_PX));
+    // Estimates that agree lie on each other: those on top are smaller.
+    const size = POSE_SHRINK ** Math.min(6, (shown.order - 70) / 4);
+    const darts = (shown.darts ??= new Darts(this.group, 1, shown.color, shown.order + 2, POSE_M * size, POSE_PX * size));
     multiply(shown.frame, 0, pose, 0, this.at, 0);
     const yaw = yawOf(this.at, 0);
     this.point(shown.frame, pose[0], pose[1], pose[2], POSE_ABOVE_M, this.p);
