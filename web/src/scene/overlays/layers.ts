@@ -118,8 +118,11 @@ export class Layers {
   }
 
   private orderOf(kind: Drawing['kind']): number {
-    // Maps below plans below particles below poses; within a kind as they come.
-    return { map: 1, path: 20, particles: 60, pose: 70 }[kind] + 4 * [...this.shown.values()].filter((s) => s.drawing.kind === kind).length;
+    // Maps below plans below particles below poses; within a kind as they come, each in a place of its own.
+    let order = { map: 1, path: 20, particles: 60, pose: 70 }[kind];
+    const taken = new Set([...this.shown.values()].map((s) => s.order));
+    while (taken.has(order)) order += 4;
+    return order;
   }
 
   private remove(id: string): void {
