@@ -109,7 +109,9 @@ export class Goals {
       return;
     }
     this.scene.showGoal(aim.at, yaw_rad);
-    const frame = this.layers.goalFrame(robot, input.programs[0] ?? '');
+    // Where nothing is known of the program: a goal is in the world, so that one which counts from elsewhere refuses it; a first pose is in the
+    // program's own frame, which has no name yet, and whose map is the world's.
+    const frame = this.layers.goalFrame(robot, input.programs[0] ?? '') ?? (isGoal(input) ? 'world' : '');
     const X_WF = this.layers.framePose(frame, robot);
     const message = goalMessage(input.type, frame, X_WF, aim.at, yaw_rad, this.store.time_s) as {pose: {position?: {x: number; y: number}; pose?: {position: {x: number; y: number}}}};
     if (!this.publisherOf(input).publish(message)) {

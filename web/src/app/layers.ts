@@ -109,15 +109,13 @@ export class Layers {
     this.onChange.emit();
   }
 
-  /**
-   * The frame in which a program is told poses: that of its own map, else of its robot's, else of what else it says that is not from odometry.
-   * Empty where nothing is known: by ROS's convention that is the frame of the program's own, and the world's as far as the page knows.
-   */
-  goalFrame(robot: string, program: string): string {
-    const of = [...this.running.values()].filter((l) => l.owner === robot && l.frame !== null && l.frame !== '' && !/(^|\/)odom/.test(l.frame) && this.placeOf(l.frame, robot) !== 'body');
-    const own = of.filter((l) => l.topic.startsWith(`/${program}/`));
-    const maps = (l: Running): boolean => l.kind === 'map' || l.kind === 'particles';
-    return (own.find(maps) ?? of.find(maps) ?? own[0])?.frame ?? '';
+  /** The frame in which a program is told poses: that of what it says itself, of maps first; else of its robot's maps; null: not known. */
+  goalFrame(robot: string, program: string): string | null {
+    const of = [...this.running.values()].filter((l) => l.owner === robot && l.frame !== null && l.frame !== '' && this.placeOf(l.frame, robot) !== 'body');
+    const own = of.filter((l) => l.topic.startsWith(`/${program}/`)).sort((l, m) => goal_order[l.kind] - goal_order[m.kind]);
+    // Maps that another program of the robot makes from odometry alone are that one's affair.
+    const map = of.find((l) => (l.kind === 'map' || l.kind === 'particles') && !/(^|\/)odom[^/]*$/.test(l.frame ?? ''));
+    return (own[0] ?? map)?.frame ?? null;
   }
 
   /** Pose of a frame in the world. @param topic  of a message in it: of its program depends what "upright" is */
@@ -321,6 +319,7 @@ export class Layers {
 }
 
 const order: Record<LayerKind, number> = {map: 0, path: 1, particles: 2, pose: 3};
+const goal_order: Record<LayerKind, number> = {map: 0, particles: 1, path: 2, pose: 3};
 
 /** Whether a topic is of a device, and then of a level that measures now: others have nothing to say. */
 export function levelOf(instance: Instance | undefined, topic: string): 'active' | 'inactive' | null {
