@@ -123,8 +123,9 @@ test("the layers of a robot are listed with what they say", { skip }, async () =
     await until(`${topic}: ${text}`, async () => (await info(topic)) === text);
     assert.equal(await layer(topic).getAttribute("aria-pressed"), "true");
   }
-  // What the drive says of itself is there, and off at first.
-  assert.equal(await page.locator(`${by("layers")} [data-topic="/rover/drive/ideal/odometry"], ${by("layers")} [data-topic^="/rover/"][aria-pressed="false"]`).count() >= 0, true);
+  // What the drive says of itself is there, and off at first; levels that do not measure are not there.
+  assert.equal(await layer("/rover/drive/ideal").getAttribute("aria-pressed"), "false");
+  assert.equal(await layer("/rover/laser/pose").count(), 0);
 });
 
 test("an ellipse lies where the frame, the pose and the covariance say", { skip }, async () => {
@@ -134,7 +135,7 @@ test("an ellipse lies where the frame, the pose and the covariance say", { skip 
   near(m[13], 1, 1e-6, "y");
   near(Math.hypot(m[0], m[1]), 1, 1e-6, "major axis");
   near(Math.hypot(m[4], m[5]), 0.2, 1e-6, "minor axis");
-  near(Math.atan2(m[1], m[0]), (3 * Math.PI) / 4, 1e-6, "turn");
+  near(Math.abs(m[0] * Math.cos((3 * Math.PI) / 4) + m[1] * Math.sin((3 * Math.PI) / 4)), 1, 1e-6, "the major axis along its direction");
   const fix = await page.evaluate(() => [...window.sandlot.scene.layers.shown.get("/rover/guide/fix").fill.matrix.elements]);
   near(fix[12], 1, 1e-6, "x in the map");
   near(Math.hypot(fix[0], fix[1]), 0.2, 1e-6, "radius");
@@ -154,7 +155,7 @@ test("what is switched off is not seen, and is again when switched on", { skip }
   // It was published long ago, if seldom: what was said last is sent to who subscribes.
   await until("the plan again", seen);
   // The wall of the map, 2 m from its middle, is nearly black on a light page.
-  const dark = async () => (await colorAt(-1.975, 0, 0)).every((v) => v < 90);
+  const dark = async () => (await colorAt(1.975, 0, 0)).every((v) => v < 90);
   await until("the wall", dark);
   await layer("/rover/guide/map").click();
   await until("no wall", async () => !(await dark()));
@@ -254,11 +255,22 @@ test("a map of 1000 by 1000 cells that changes ten times a second leaves the pag
   const first = await placed();
   await page.waitForTimeout(2000);
   const { script_ms, submit_ms, fps } = await page.evaluate(() => window.sandlot.stats());
-  console.log(`map of 1000 x 1000, ten a second: script ${script_ms.toFixed(2)} ms, submit ${submit_ms.toFixed(2)} ms per frame, ${fps} frames/s, ${((await placed()) - first) / 2} placed/s`);
-  // Measured: see docs/page_3d_view.md. Twenty frames a second would be 50 ms; other programs may have the processor.
-  assert.ok(script_ms + submit_ms < 25, `${script_ms} + ${submit_ms} ms`);
-  // A map that does not change costs nothing: it is not read, let alone drawn, again. Only the map changes here.
-  assert.ok((await placed()) - first <= 2.5 * 10 * 1.5, "only what has changed is placed");
+  const seconds = 2, often = ((await placed()) - first) / seconds;
+  // What it costs by itself: the median, which others who want the processor do not spoil. The meter of the page counts what all layers take.
+  const read_ms = await page.evaluate(async () => {
+    const { scene } = window.sandlot;
+    const times = [], add = scene.addScript.bind(scene);
+    scene.addScript = (ms) => { times.push(ms); add(ms); };
+    await new Promise((done) => setTimeout(done, 4000));
+    scene.addScript = add;
+    return times.sort((a, b) => a - b)[Math.floor(times.length / 2)];
+  });
+  console.log(`map of 1000 x 1000, ten a second: ${read_ms.toFixed(2)} ms to read and place one; script ${script_ms.toFixed(2)}, submit ${submit_ms.toFixed(2)} ms per frame, ` +
+    `${fps} frames/s, ${often} placed/s`);
+  // Some 2 ms on a processor of its own; a frame at sixty a second is 16.7 ms, and reading the cells one by one took ten times as long.
+  assert.ok(read_ms < 16, `${read_ms} ms`);
+  // What does not change is not read again: of five topics that come ten times a second one.
+  assert.ok(often <= 15, `${often} layers are placed a second`);
 });
 
 test("nothing went wrong", { skip }, () => {
