@@ -1,0 +1,62 @@
+// Takes the picture of docs/page.md on plans and estimates: MARIO in the vineyard, in Debian's Chromium. `./dev test` installs what it needs.
+//
+//   node tools/make_vineyard_picture.mjs [FILE]      FILE is docs/images/vineyard_page.png when left out
+import { writeFileSync } from "node:fs";
+import { chromium } from "../tests/js/node_modules/playwright-core/index.mjs";
+import { Scratch, Served, until } from "../tests/js/served.mjs";
+import { Viewer } from "../tests/js/viewer.mjs";
+
+const file = process.argv[2] ?? "docs/images/vineyard_page.png";
+// MARIO is half way up the first row, and the wheels alone are half a metre unsure.
+const time_s = 20;
+const scratch = new Scratch();
+const served = await Served.start(["run", "scenarios/vineyard_loop.yaml", "--command", `at ${time_s} s pause`], scratch);
+const viewer = new Viewer(served.ws, "foxglove.websocket.v1");
+let status;
+await viewer.subscribe("/sandlot/status", (s) => { status = s; });
+const browser = await chromium.launch({ executablePath: process.env.SANDLOT_CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
+try {
+  const page = await browser.newPage({ viewport: { width: 960, height: 660 }, colorScheme: "light" });
+  page.setDefaultTimeout(300000);
+  await page.addInitScript(() => localStorage.setItem("sandlot.frame.folded", JSON.stringify({ left: true, right: true })));
+  await page.goto(served.url);
+  const by = (id) => page.locator(`[data-testid="${id}"]`);
+  await by("tab-pictures").click();
+  await by("add-picture").click();
+  await by("picture-topic").nth(1).selectOption({ label: "mario/stereo/right/image" });
+  await until("a good moment", () => status?.time_s >= time_s - 0.005, 900);
+  await page.evaluate(() => {
+    const { scene } = window.sandlot;
+    scene.setOverlays({ names: false, trails: false, shadows: false });
+    const { goal } = scene.rig;
+    goal.target.set(0.9, 1.9, 0.6);
+    Object.assign(goal, { distance: 6, azimuth: -Math.PI / 2 - 0.25, elevation: 1.15 });
+    scene.rig.settle();
+    scene.invalidate();
+  });
+  await page.waitForTimeout(6000);  // what is still being drawn
+  const taken = (await page.screenshot()).toString("base64");
+  // Grass has as many colours as pixels: of each channel four bits, and the file is half as large.
+  const smaller = await page.context().newPage();
+  const png = await smaller.evaluate(async (data) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const image = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    image.data.forEach((v, i) => { if (i % 4 !== 3 && v < 250) image.data[i] = v & 0xf0 | 0x08; });
+    context.putImageData(image, 0, 0);
+    const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: "image/png" })).arrayBuffer());
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 4096) text += String.fromCharCode(...bytes.subarray(i, i + 4096));
+    return btoa(text);
+  }, taken);
+  writeFileSync(file, Buffer.from(png, "base64"));
+  writeFileSync(`${file}.full`, Buffer.from(taken, "base64"));
+} finally {
+  await browser.close();
+  viewer.close();
+  await served.stop();
+  scratch.remove();
+}
