@@ -12,15 +12,21 @@ namespace sandlot {
 namespace {
 
 std::atomic<KindsWith> kinds_with = nullptr;
-thread_local std::vector<std::uint32_t>* claims = nullptr;
+thread_local std::vector<std::uint32_t>*claims = nullptr, *reads = nullptr;
+
+void note(std::vector<std::uint32_t>& list, std::uint32_t index) {
+  const auto place = std::lower_bound(list.begin(), list.end(), index);
+  if (place == list.end() || *place != index) list.insert(place, index);
+}
 
 }  // namespace
 
-ClaimNotes::ClaimNotes(std::vector<std::uint32_t>& out) {
+ClaimNotes::ClaimNotes(std::vector<std::uint32_t>& claimed, std::vector<std::uint32_t>& read) {
   SL_CHECK(claims == nullptr);
-  claims = &out;
+  claims = &claimed;
+  reads = &read;
 }
-ClaimNotes::~ClaimNotes() { claims = nullptr; }
+ClaimNotes::~ClaimNotes() { claims = reads = nullptr; }
 
 void set_kinds_with(KindsWith function) { kinds_with = function; }
 
@@ -45,10 +51,7 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
     if (match && !found) found = &entry;
   }
   if (found) {
-    if (claims && &entries == &actuators) {
-      const auto place = std::lower_bound(claims->begin(), claims->end(), found->index);
-      if (place == claims->end() || *place != found->index) claims->insert(place, found->index);
-    }
+    if (claims) note(&entries == &actuators ? *claims : *reads, found->index);
     return found;
   }
   const std::string wanted = device.empty()

@@ -110,7 +110,8 @@ struct SimulationParts {
     std::shared_ptr<const model::ControllerDecl> shared_decl;  ///< one object for equal declarations
     const model::ControllerDecl& decl;
     std::string path;
-    std::vector<std::uint32_t> claims;  ///< actuators of the description that it looked up (control/claims.h)
+    std::vector<std::uint32_t> claims,
+        reads;  ///< actuators and readings that it looked up (control/claims.h)
   };
   using ProgramEntries = std::vector<Owned<ProgramEntry>>;
   /// A controller that came while the run went on (sim/world/controllers.h) and is no program: one that is not configured yet,

@@ -213,7 +213,7 @@ Result<Owned<Programs::ProgramEntry>> Programs::make(const Driven& driven, const
             setup_.clock.mode == model::Clock::Mode::fixed ? setup_.step : setup_.clock.min_step);
     }
     program->description = describe(driven, before, period_s);
-    const ClaimNotes notes(program->claims);
+    const ClaimNotes notes(program->claims, program->reads);
     if (program->description->robot == driven.name) {
       status = program->program->init(*program->description, config, *outputs);
     } else {
