@@ -147,12 +147,42 @@ std::pair<double, double> lines_range(const std::vector<Line>& lines, bool of_x,
   return {low - air, high + air};
 }
 
+/// `range` with the marks of its axis in it.
+std::pair<double, double> with_marks(std::pair<double, double> range, bool of_x, const PlotOptions& options) {
+  if (of_x ? options.x_range.has_value() : options.y_range.has_value()) return range;
+  for (const PlotOptions::Mark& mark : options.marks) {
+    if (mark.vertical != of_x) continue;
+    const double air = 0.05 * (range.second - range.first);
+    if (mark.at > range.second - air) range.second = mark.at + air;
+    if (mark.at < range.first + air) range.first = mark.at - air;
+  }
+  return range;
+}
+
 struct Frame2 {
   double left, top, width, height;
   std::pair<double, double> x, y;
   double px(double value) const { return left + (value - x.first) / (x.second - x.first) * width; }
   double py(double value) const { return top + height - (value - y.first) / (y.second - y.first) * height; }
 };
+
+/// Widens one of the ranges so that a unit has the same length on both axes, or makes the frame higher.
+void scale_equally(Frame2& frame) {
+  constexpr double lowest = 240, highest = 640, air = 0.05;
+  for (auto* const range : {&frame.x, &frame.y}) {
+    const double more = air * (range->second - range->first);
+    range->first -= more, range->second += more;
+  }
+  const auto length = [](const std::pair<double, double>& range) { return range.second - range.first; };
+  const double wanted = frame.width * length(frame.y) / length(frame.x);
+  frame.height = std::clamp(wanted, lowest, highest);
+  const auto widen = [&](std::pair<double, double>& range, double to) {
+    const double more = (to - length(range)) / 2;
+    range.first -= more, range.second += more;
+  };
+  if (wanted > highest) widen(frame.x, length(frame.y) * frame.width / frame.height);
+  else if (wanted < lowest) widen(frame.y, length(frame.x) * frame.height / frame.width);
+}
 
 /// The line's path data; points in one half pixel column are thinned to those that show.
 std::string path_of(const Line& line, const Frame2& frame) {
@@ -284,10 +314,8 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
                0,
                0,
                plot_height,
-               lines_range(lines, true, options.x_range, {}),
-               lines_range(lines, false, options.y_range, options.x_range)};
-  const Ticks x_ticks = round_ticks(frame.x.first, frame.x.second, 9);
-  const Ticks y_ticks = round_ticks(frame.y.first, frame.y.second, 7);
+               with_marks(lines_range(lines, true, options.x_range, {}), true, options),
+               with_marks(lines_range(lines, false, options.y_range, options.x_range), false, options)};
 
   std::string y_label = options.y_label;
   if (y_label.empty()) {
@@ -308,9 +336,16 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
     x_label = with_unit(tables.front().names[x], tables.front().units[x]);
   }
 
+  if (options.equal_scale) {
+    frame.width = width - 100;  // about what the labels leave
+    scale_equally(frame);
+  }
+  const Ticks x_ticks = round_ticks(frame.x.first, frame.x.second, 9);
+  const Ticks y_ticks = round_ticks(frame.y.first, frame.y.second, 7);
   double widest = 0;
   for (const std::string& text : y_ticks.text) widest = std::max(widest, text_width(text, font));
   frame.left = 18 + widest + (y_label.empty() ? 0 : font + 12);
+  if (options.equal_scale) frame.height *= (width - frame.left - 24) / frame.width;
   frame.width = width - frame.left - 24;
   double y = 14;
   std::string body;
@@ -336,7 +371,7 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
     double x = frame.left;
     y += font + 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const double needed = 34 + text_width(lines[i].label, font) + 22;
+      const double needed = 34 + text_width(lines[i].label, font) + 30;
       if (x > frame.left && x + needed > width) x = frame.left, y += font + 8;
       body += fmt::format("<path d=\"M{:.1f} {:.1f}h26\" {}/>\n", x, y - 5, style(i));
       text(x + 34, y, "start", lines[i].label);
@@ -377,6 +412,18 @@ Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOption
   out += "<g clip-path=\"url(#axes)\">\n";
   for (std::size_t i = 0; i < lines.size(); ++i)
     out += fmt::format("<path d=\"{}\" {}/>\n", path_of(lines[i], frame), style(i));
+  for (const PlotOptions::Mark& mark : options.marks) {
+    const double px = frame.px(mark.at), py = frame.py(mark.at);
+    out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#444444\" stroke-dasharray=\"6 4\"/>\n",
+                       mark.vertical ? fmt::format("M{:.1f} {:.1f}V{:.1f}", px, frame.top, bottom)
+                                     : fmt::format("M{:.1f} {:.1f}H{:.1f}", frame.left, py, right));
+    // A label stands left of a vertical line in the right half, below a level one at the upper edge.
+    const bool left = mark.vertical && px > frame.left + frame.width / 2;
+    const bool below = !mark.vertical && py < frame.top + 2 * font;
+    text(mark.vertical ? px + (left ? -6 : 6) : frame.left + 6,
+         mark.vertical ? bottom - 8 : py + (below ? font + 2 : -6), left ? "end" : "start", mark.label,
+         " stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"");
+  }
   out += "</g>\n";
   out += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}H{3:.1f}\" fill=\"none\" stroke=\"#444444\"/>\n",
                      frame.left, frame.top, bottom, right);

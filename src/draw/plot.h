@@ -35,6 +35,15 @@ struct PlotOptions {
   std::vector<std::string>
       colours;  ///< of the lines, in order: "red", "blue" or "#1f77b4"; the others get their own
   std::optional<std::pair<double, double>> x_range, y_range;
+  /// A unit is as long on both axes, as a map needs it: the figure becomes higher or lower, and the shorter axis gets air.
+  bool equal_scale = false;
+  /// Straight line across the axes at a value to compare with; it counts for the range.
+  struct Mark {
+    bool vertical = false;  ///< at an x; else at a y
+    double at = 0;
+    std::string label;  ///< beside it, within the axes
+  };
+  std::vector<Mark> marks;
 };
 /// SVG of the figure; errors name the nearest column.
 Result<std::string> draw_plot(const std::vector<Table>& tables, const PlotOptions& options);

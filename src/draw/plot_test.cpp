@@ -1,6 +1,7 @@
 #include "draw/plot.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,40 @@ TEST(Plot, PointsLieWhereTheAxesSay) {
   EXPECT_NEAR(p[2].second, (p[0].second + p[1].second) / 2, 0.1);
   EXPECT_NE(svg->find(">time [s]<"), std::string::npos);
   EXPECT_NE(svg->find(">a [m]<"), std::string::npos);
+}
+
+TEST(Plot, MapsHaveOneScale) {
+  // 10 m by 2 m, and by 40 m: a metre is as long in both directions.
+  for (const char* const rows : {"0,0\n10,0\n10,2\n", "0,0\n10,0\n10,40\n", "0,0\n10,0\n10,8\n"}) {
+    const Table t = table(std::string("x,y\n") + rows);
+    const auto svg = draw_plot({t}, {.x = "x", .equal_scale = true});
+    ASSERT_TRUE(svg);
+    const auto p = points(*svg);
+    ASSERT_EQ(p.size(), 3u);
+    const double across = (p[1].first - p[0].first) / 10;
+    EXPECT_NEAR((p[1].second - p[2].second) / t.columns[1][2], across, 0.1) << rows;
+    EXPECT_GT(across, 10);
+  }
+}
+
+TEST(Plot, MarksLieWhereTheAxesSayAndCountForTheRange) {
+  const Table t = table("time,a\n0,0\n10,1\n");
+  const auto svg = draw_plot({t}, {.marks = {{false, 4, "limit <4>"}, {true, 5, "half"}}});
+  ASSERT_TRUE(svg);
+  EXPECT_NE(svg->find("limit &lt;4&gt;"), std::string::npos);
+  const auto p = points(*svg);
+  ASSERT_EQ(p.size(), 2u);
+  std::size_t at = svg->find("#444444\" stroke-dasharray");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t level = svg->rfind("<path d=\"M", at);
+  double x = 0, y = 0;
+  ASSERT_EQ(std::sscanf(svg->c_str() + level, "<path d=\"M%lf %lf", &x, &y), 2);
+  EXPECT_NEAR(y, p[0].second + 4 * (p[1].second - p[0].second), 0.3);
+  EXPECT_GT(y, 14);  // within the figure
+  at = svg->find("#444444\" stroke-dasharray", at + 1);
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_EQ(std::sscanf(svg->c_str() + svg->rfind("<path d=\"M", at), "<path d=\"M%lf %lf", &x, &y), 2);
+  EXPECT_NEAR(x, (p[0].first + p[1].first) / 2, 0.1);
 }
 
 TEST(Plot, LinesTakeTheColoursTheyAreGiven) {
