@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -91,6 +92,49 @@ TEST(Lag, RefusesWhatHasNone) {
   EXPECT_FALSE(lag(good, broken, 0.1, 1));
   // The true lag of 0.19 s lies beyond 0.1 s.
   EXPECT_FALSE(lag(wave(1500, 0.02, 0), wave(1500, 0.02, 0.19), 0.02, 0.1));
+}
+
+TEST(Lag, IsThePeakOfItsCurve) {
+  constexpr double dt = 0.02;
+  const auto curve = lag_correlations(wave(1500, dt, 0), wave(1500, dt, 0.2), dt, 0.5);
+  ASSERT_TRUE(curve);
+  ASSERT_EQ(curve->size(), 51u);  // 25 shifts to each side
+  EXPECT_EQ(std::max_element(curve->begin(), curve->end()) - curve->begin(), 25 + 10);
+  EXPECT_NEAR((*curve)[35], 1, 1e-9);
+}
+
+/// Response of a loop of the second order with damping ratio z and undamped frequency w to a step from `from` to `to`.
+Signal second_order(double z, double w, double from, double to, double dt_s, double end_s) {
+  Signal out;
+  const double wd = w * std::sqrt(1 - z * z);
+  for (double t = 0; t < end_s; t += dt_s)
+    out.push_back(to +
+                  (from - to) * math::exp(-z * w * t) * (math::cos(wd * t) + z * w / wd * math::sin(wd * t)));
+  return out;
+}
+
+TEST(StepResponse, HasTheFiguresOfASecondOrderLoop) {
+  // Overshoot exp(-pi z / sqrt(1 - z^2)); a first-order loop rises in ln 9 time constants and settles in ln 50 of them.
+  const auto found = step_response(second_order(0.5, 10, 0.5, 0, 1e-3, 3), 0.5, 0, 1e-3);
+  ASSERT_TRUE(found) << found.error().text();
+  EXPECT_NEAR(found->overshoot, math::exp(-math::pi * 0.5 / std::sqrt(0.75)), 1e-4);
+  EXPECT_NEAR(found->error, 0, 1e-6);
+  Signal slow;
+  for (int i = 0; i < 2000; ++i) slow.push_back(3 - 2 * math::exp(-i * 1e-3 / 0.2));
+  const auto first = step_response(slow, 1, 3, 1e-3);
+  ASSERT_TRUE(first) << first.error().text();
+  EXPECT_NEAR(first->rise_s, 0.2 * 2.197225, 1e-4);
+  EXPECT_NEAR(first->settle_s, 0.2 * 3.912023, 1e-4);
+  EXPECT_EQ(first->overshoot, 0);
+}
+
+TEST(StepResponse, RefusesWhatHasNone) {
+  const Signal early(second_order(0.5, 10, 0.5, 0, 1e-3, 0.4));  // beyond the end, on its way back
+  EXPECT_FALSE(step_response(early, 0.5, 0, 1e-3));
+  EXPECT_FALSE(step_response(Signal(100, 0.5), 0.5, 0, 1e-3));
+  EXPECT_FALSE(step_response(early, 0, 0, 1e-3));
+  EXPECT_FALSE(step_response(early, 0.5, 0, 0));
+  EXPECT_FALSE(step_response(Signal{0.5, 0, 0}, 0.5, 0, 1e-3));
 }
 
 }  // namespace
