@@ -190,6 +190,7 @@ struct ReproduceOptions {
   std::optional<int> repeat;        ///< runs per condition; unset: as many as the paper's line says
   std::vector<std::string> traces;  ///< files of step times, in place of runs
   int at_a_time = 0;                ///< of those; 0: as many as the machine has processors
+  bool quick = false;               ///< without the parts that take long
 };
 int reproduce(const ReproduceOptions& options);
 

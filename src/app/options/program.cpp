@@ -79,17 +79,21 @@ void add_reproduce(CommandLine& line) {
   ReproduceOptions& options = line.keep<ReproduceOptions>();
   CLI::App* const verb = line.app.add_subcommand(
       "reproduce", "Make the experiment of a paper, its figures and tables beside the paper's statements");
-  verb->add_option("paper", options.paper, "Name of the paper: cooperation, eyesim, lpzrobots, msl")
+  verb->add_option("paper", options.paper, "Name of the paper: cooperation, eyesim, lpzrobots, mario, msl")
       ->required();
-  verb->add_option("--out", options.out, "Folder to write index.html and the tables (CSV) into")->required();
+  verb->add_option("--out", options.out, "Folder to write index.html and its data (CSV, JSON, SVG) into")
+      ->required();
   verb->add_option("--repeat", options.repeat, "Runs of each condition, with seeds that follow each other");
   verb->add_option("--at-a-time", options.at_a_time,
                    "Runs at the same time; as many as the machine has processors if left out")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--traces", options.traces,
                    "msl: files of `run --step-times` to use instead of runs; may be given several times");
+  verb->add_flag("--quick", options.quick,
+                 "mario: without the loop through the vineyard, which takes minutes");
   verb->footer(
-      "Example: sandlot reproduce cooperation --out report\n         sandlot reproduce msl --out report");
+      "Example: sandlot reproduce cooperation --out report\n         sandlot reproduce mario --out report "
+      "--quick");
   verb->callback([&line, &options] { line.result = reproduce(options); });
 }
 

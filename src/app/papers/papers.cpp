@@ -15,8 +15,22 @@ constexpr Paper all[] = {
     {"eyesim", "Mobile Robot Simulation with Realistic Error Models", 20, 0, "99.9 %", make_eyesim},
     {"lpzrobots", "Goal-oriented control of self-organizing behavior in autonomous robots", 20, 39, "95 %",
      make_lpzrobots},
-    {"msl", "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction", 0, 0, "",
-     make_msl},
+    {.name = "mario",
+     .title =
+         "Modelling and simulation of a non-holonomic omnidirectional mobile robot for offline programming "
+         "and system performance analysis",
+     .repeat = 0,
+     .conditions = 0,
+     .intervals = "",
+     .make = make_mario,
+     .quick = true},
+    {.name = "msl",
+     .title = "A Simulation Environment for Middle-Size Robots with Multi-level Abstraction",
+     .repeat = 0,
+     .conditions = 0,
+     .intervals = "",
+     .make = make_msl,
+     .traces = true},
 };
 
 }  // namespace

@@ -6,9 +6,13 @@
 #include <vector>
 
 #include "app/papers/page.h"
+#include "assets/image/visible.h"
 #include "base/result.h"
+#include "draw/plot.h"
+#include "draw/viewpoint.h"
 #include "run/repeat.h"
 #include "run/step_times_file.h"
+#include "sim/watch/topic_graph.h"
 
 namespace sandlot::app {
 
@@ -17,6 +21,21 @@ struct Condition {
   std::string name;
   std::string scenario;                                       ///< "clearing"
   std::vector<std::pair<std::string, std::string>> settings;  ///< as --set takes them
+};
+
+/// One run of a condition with named values in each sample.
+struct LoggedRunSpec {
+  Condition condition;
+  std::vector<std::string> values;             ///< as --log-values takes them
+  std::optional<double> rate_hz;               ///< of the samples; unset: each tick
+  std::optional<double> duration_s;            ///< unset: as the scenario says
+  std::optional<draw::ViewpointOptions> view;  ///< of a picture of the beginning
+};
+struct LoggedRun {
+  draw::Table values;  ///< "time", then the values
+  std::string csv;     ///< the same as text
+  assets::Picture picture;
+  TopicGraph graph;  ///< at the end
 };
 
 /// What an experiment needs from the command.
@@ -32,7 +51,9 @@ struct ReproduceContext {
   std::function<Result<std::vector<StepTime>>(const Condition&, double duration_s,
                                               std::optional<double> rate)>
       step_times;
+  std::function<Result<LoggedRun>(const LoggedRunSpec&)> logged;
   std::vector<std::string> traces;  ///< files of step times to use instead of runs
+  bool quick = false;               ///< without the parts that take long
   /// Writes a text file into the folder.
   std::function<Status(const std::string& name, std::string_view text)> write;
 };
@@ -40,11 +61,13 @@ struct ReproduceContext {
 struct Paper {
   const char* name;
   const char* title;
-  /// Runs per condition, unless the command says another number; 0: it takes step times instead, of runs or of files.
+  /// Runs per condition, unless the command says another number; 0: it repeats none.
   int repeat;
   int conditions;         ///< how many there are, for the progress
   const char* intervals;  ///< confidence of its intervals: "95 %"
   Status (*make)(const ReproduceContext& context, ReportPage& page);
+  bool traces = false;  ///< it takes step times, of runs or of files
+  bool quick = false;   ///< it has parts that --quick leaves out
 };
 
 std::span<const Paper> papers();
@@ -52,6 +75,7 @@ std::span<const Paper> papers();
 Status make_cooperation(const ReproduceContext& context, ReportPage& page);
 Status make_eyesim(const ReproduceContext& context, ReportPage& page);
 Status make_lpzrobots(const ReproduceContext& context, ReportPage& page);
+Status make_mario(const ReproduceContext& context, ReportPage& page);
 Status make_msl(const ReproduceContext& context, ReportPage& page);
 
 /// --- what reports share ---

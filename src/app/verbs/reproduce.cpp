@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "app/commands.h"
 #include "app/demos.h"
@@ -14,9 +15,41 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "files/text.h"
+#include "run/run.h"
+#include "sim/session/session.h"
 
 namespace sandlot::app {
 namespace {
+
+/// File of a run that is read and removed again.
+struct Scratch {
+  Scratch(const std::string& folder, const std::string& name)
+      : path((std::filesystem::path(folder) / name).string()) {}
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const std::string path;
+};
+
+/// Makes the folder, tries whether files can be written there.
+Status prepare_folder(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const auto refused = [&](const std::string& why) {
+    return Error{"--out " + folder + ": " + why, "name a folder that can be written"};
+  };
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return refused(error.message());
+  if (!fs::is_directory(folder, error)) return refused("it is not a folder");
+  const Scratch probe(folder, "index.html.probe");
+  std::ofstream out(probe.path);
+  out << "probe\n" << std::flush;
+  if (!out) return refused("no file can be written there");
+  return {};
+}
 
 Result<RunSpec> condition_spec(const Condition& condition) {
   RunSpec spec;
@@ -93,6 +126,47 @@ class Runner {
     return steps;
   }
 
+  Result<LoggedRun> logged(const LoggedRunSpec& wanted) const {
+    const Condition& condition = wanted.condition;
+    SL_ASSIGN(RunSpec spec, condition_spec(condition));
+    const Scratch values(options_.out, "values.csv.part");
+    spec.log_file = values.path;
+    spec.log_values = wanted.values;
+    spec.log_rate_hz = wanted.rate_hz;
+    spec.duration_s = wanted.duration_s;
+    spec.threads = 0;
+    LoggedRun out;
+    RunCallbacks callbacks;
+    Session* session = nullptr;
+    callbacks.on_ready = [&](const RunParts& parts) -> Status {
+      session = &parts.session;
+      if (!wanted.view) return {};
+      SL_ASSIGN(draw::Viewpoint view, draw::Viewpoint::make(*wanted.view, session->simulation()));
+      SL_ASSIGN(out.picture, view.picture(session->simulation()));
+      return {};
+    };
+    const bool shows = isatty(STDERR_FILENO);
+    int shown = -1;
+    callbacks.keep_going = [&](const Simulation& now) {
+      if (const int second = static_cast<int>(now.now().s()); shows && second != shown)
+        std::fprintf(stderr, "\r\033[Krunning %s, %d s", condition.name.c_str(), shown = second);
+      return !interrupted();
+    };
+    callbacks.on_end = [&](Summary&) {
+      if (session) out.graph = topic_graph(session->simulation());
+    };
+    const auto summary = sandlot::run(spec, callbacks);
+    if (shows) std::fputs("\r\033[K", stderr);
+    if (!summary) return summary.error();
+    if (interrupted()) return Error{"interrupted"};
+    if (!summary->errors.empty()) return Error{condition.name + ": " + summary->errors.front()};
+    SL_ASSIGN(out.csv, read_text_file(values.path, std::uint64_t{1} << 28));
+    SL_ASSIGN(out.values, draw::read_csv(out.csv, condition.name + ".csv"));
+    fmt::print("{:<40} {:g} s\n", condition.scenario + ": " + condition.name, summary->sim_s);
+    std::fflush(stdout);
+    return out;
+  }
+
   std::uint64_t failed() const { return failed_; }
 
  private:
@@ -117,16 +191,16 @@ int reproduce(const ReproduceOptions& options) {
   const int repeat = options.repeat.value_or(paper->repeat);
   const bool repeats = paper->repeat > 0;
   if (!repeats && options.repeat)
-    return complain(
-        {fmt::format("--repeat: {} takes step times, not repeated runs", paper->name), "leave it out"});
-  if (repeats && !options.traces.empty())
+    return complain({fmt::format("--repeat: {} repeats no runs", paper->name), "leave it out"});
+  if (!paper->traces && !options.traces.empty())
     return complain({fmt::format("--traces: {} takes no step times", paper->name), "leave it out"});
+  if (!paper->quick && options.quick)
+    return complain({fmt::format("--quick: {} has no parts to leave out", paper->name), "leave it out"});
   if (repeats && (repeat < 1 || repeat > 1'000'000))
     return complain({"--repeat: must be in [1, 1000000], is " + std::to_string(repeat)});
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error)
-    return complain({"--out " + options.out + ": " + error.message(), "name a folder that can be written"});
+  std::error_code ignored;
+  const bool was_there = std::filesystem::exists(options.out, ignored);
+  if (Status prepared = prepare_folder(options.out); !prepared) return complain(prepared.error());
 
   catch_interrupts();
   Runner runner(options, *paper, repeat);
@@ -141,19 +215,23 @@ int reproduce(const ReproduceOptions& options) {
   context.step_times = [&](const Condition& condition, double duration_s, std::optional<double> rate) {
     return runner.step_times(condition, duration_s, rate);
   };
+  context.logged = [&](const LoggedRunSpec& spec) { return runner.logged(spec); };
   context.traces = options.traces;
+  context.quick = options.quick;
   context.write = [&](const std::string& name, std::string_view text) {
     return write_file((std::filesystem::path(options.out) / name).string(), text);
   };
   ReportPage page(
       paper->title,
-      repeats ? fmt::format(
-                    "Made by `sandlot reproduce {} --repeat {}`: {} runs with seeds that follow each other "
-                    "in each condition. Intervals are for {}.",
-                    paper->name, repeat, repeat, paper->intervals)
-              : fmt::format("Made by `sandlot reproduce {}`.", paper->name));
+      repeats
+          ? fmt::format(
+                "Made by `sandlot reproduce {} --repeat {}`: {} runs with seeds that follow each other "
+                "in each condition. Intervals are for {}.",
+                paper->name, repeat, repeat, paper->intervals)
+          : fmt::format("Made by `sandlot reproduce {}{}`.", paper->name, options.quick ? " --quick" : ""));
   if (Status made = paper->make(context, page); !made) {
     complain(made.error());
+    if (!was_there) std::filesystem::remove(options.out, ignored);  // empty: nothing was written
     return interrupted() ? exit_failed : exit_bad_input;
   }
   if (Status written = context.write("index.html", page.html()); !written) return complain(written.error());
