@@ -132,9 +132,8 @@ Status figure_12(Report& report, const Runs& runs) {
       "The paper's "
       "curves have another course: its recording is not printed. From 19 s to 21 s two wheels would have to "
       "turn past their stops at 90 "
-      "degrees; they stay there, and the robot turns half as fast as commanded. A spike with latency is a "
-      "moment in which the wheels "
-      "disagree because they turn by unequal angles.");
+      "degrees; they stay there, and the robot turns half as fast as commanded. The spikes with latency "
+      "come where the wheels steer far and fast: meanwhile the robot drives where they point.");
   return {};
 }
 

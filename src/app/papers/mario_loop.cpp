@@ -244,7 +244,8 @@ void figure_16(Report& report, const TopicGraph& graph) {
       "four velocity controllers, whose "
       "joint states come back to it, and wheel odometry, visual odometry and the inertial unit meet in the "
       "filter. The simulator "
-      "itself is not a node here, as Gazebo is in ROS. `joystick` follows points along the rows in place of "
+      "itself is not a node here, as Gazebo is in ROS. The node joystick follows points along the rows in "
+      "place of "
       "the person, and reads the true "
       "place for it; no estimator does. The names of the paper's graph are in a picture that was not at "
       "hand.");
