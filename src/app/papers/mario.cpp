@@ -23,7 +23,7 @@ void add_summary(mario::Report& report) {
 }
 
 /// Data beside the page, with links.
-void add_files(const mario::Report& report) {
+void add_data_files(const mario::Report& report) {
   constexpr std::array<std::pair<const char*, const char*>, 7> contents{
       {{"step.csv", "angle of servo1 during the step of Figure 9"},
        {"table_1.csv", "Table 1, both columns"},
@@ -75,7 +75,7 @@ Status make_mario(const ReproduceContext& context, ReportPage& page) {
   SL_TRY(mario::loop(report));
   add_summary(report);
   report.files.emplace_back("results.json", results_json(report));
-  add_files(report);
+  add_data_files(report);
   for (const auto& [name, text] : report.files) SL_TRY(context.write(name, text));
   return {};
 }
