@@ -5,18 +5,14 @@
 #include <tuple>
 
 #include "base/check.h"
-#include "base/math.h"
+#include "navigation/estimation/ekf_step.h"
 
 namespace sandlot::navigation::ekf {
 namespace {
 
 constexpr Time last_stamp{4'000'000'000'000'000'000};
 constexpr std::size_t most_samples = 4096;
-constexpr double most_core = 1e30;
 constexpr std::int64_t checkpoints_per_history = 8;
-
-constexpr std::array<bool, states> pinned_in_plane = {false, false, true, true,  true,  false, false, false,
-                                                      true,  true,  true, false, false, false, true};
 
 /// The order in which samples are processed.
 template <class T>
@@ -27,133 +23,6 @@ auto order_of(const T& x) {
 
 /// For searches: the first sample after a core.
 bool later(const Core& core, const Sample& sample) { return order_of(core) < order_of(sample); }
-
-Core first_core(const Spec& spec) {
-  Core core;
-  core.x = spec.initial_state;
-  for (std::size_t i = 0; i < states; ++i) {
-    core.P.at(i, i) = spec.initial_covariance[i];
-    if (spec.two_d_mode && pinned_in_plane[i]) core.x[i] = core.P.at(i, i) = 0;
-  }
-  wrap_angles(core.x);
-  core.memories.resize(spec.sensors.size());
-  return core;
-}
-
-Vector process_noise(const Spec& spec) {
-  Vector noise = spec.process_noise;
-  for (std::size_t i = 0; i < states; ++i)
-    if (spec.two_d_mode && pinned_in_plane[i]) noise[i] = 0;
-  return noise;
-}
-
-/// Differences and poses from the first one. `queued` when the sample can be compared with the estimate.
-Outcome count_from_memory(const Sensor& sensor, Memory& memory, Sample& sample) {
-  if (!memory.set || sensor.differential) {
-    const Memory before = memory;
-    memory = {true, sample.stamp, sample.value, sample.covariance};
-    if (sensor.differential) {
-      const double dt_s = (sample.stamp - before.at).s();
-      if (!before.set || !(dt_s > 0) || dt_s > sensor.longest_gap_s) return Outcome::started;
-      Sample from;
-      from.value = before.value, from.covariance = before.covariance;
-      difference(from, Sample(sample), sensor.pose_errors, dt_s, sample);
-      return Outcome::queued;
-    }
-  }
-  make_relative(memory.value, sample);
-  return Outcome::queued;
-}
-
-struct Processed {
-  Outcome outcome = Outcome::used;
-  double squared_distance = 0;
-  std::size_t components = 0;
-};
-
-/// Whether nothing has grown beyond what the next step can take without overflow.
-bool sound_core(const Core& core) {
-  for (std::size_t i = 0; i < states; ++i)
-    if (!(std::abs(core.x[i]) <= most_core) || !(core.P.at(i, i) >= 0 && core.P.at(i, i) <= most_core))
-      return false;
-  return true;
-}
-
-/// Compares a sample with the estimate at its time, and corrects that.
-Processed compare(const Spec& spec, Core& core, const Sample& given) {
-  const Sensor& sensor = spec.sensors[given.sensor];
-  Sample sample = given;
-  const std::size_t chosen_from = first_index(given.part);
-  if (given.part == Part::pose && (sensor.differential || sensor.relative)) {
-    const Outcome outcome = count_from_memory(sensor, core.memories[given.sensor], sample);
-    if (outcome != Outcome::queued) return {outcome};
-  }
-  const bool has_arm = sensor.kind == SensorKind::gps && !(sensor.mount.p == Vec3{});
-  if (has_arm || sample.holds_gravity) {
-    const Quat q_WB = quat_from_rpy(core.x[Roll], core.x[Pitch], core.x[Yaw]);
-    const Vec3 less = has_arm ? rotate(q_WB, sensor.mount.p)
-                              : rotate_inverse(q_WB, {0, 0, spec.gravity_mps2});
-    for (std::size_t i = 0; i < 3; ++i) sample.value[i] -= less[i];
-  }
-
-  Innovation innovation;
-  std::array<std::size_t, 6> taken{};
-  const std::size_t first = first_index(sample.part);
-  for (std::size_t i = 0; i < 6 && first + i < states; ++i) {
-    const std::size_t index = first + i;
-    if (!sensor.config[chosen_from + i] || (spec.two_d_mode && pinned_in_plane[index])) continue;
-    taken[innovation.count] = i;
-    innovation.index[innovation.count] = index;
-    const double y = sample.value[i] - core.x[index];
-    innovation.y[innovation.count++] = is_angle(index) ? math::wrap_angle(y) : y;
-  }
-  const std::size_t m = innovation.count;
-  if (m == 0) return {Outcome::unmeasured};
-  for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t j = 0; j < m; ++j)
-      innovation.noise[i * m + j] = sample.covariance[triangle_index(taken[i], taken[j])];
-  if (sample.part != given.part) {
-    // A difference's covariance was not known when the message was checked.
-    if (sensor.deviation.size() == states)
-      for (std::size_t i = 0; i < m; ++i) {
-        const double deviation = sensor.deviation[innovation.index[i]];
-        if (!(deviation > 0)) continue;
-        for (std::size_t j = 0; j < m; ++j) innovation.noise[i * m + j] = innovation.noise[j * m + i] = 0;
-        innovation.noise[i * m + i] = deviation * deviation;
-      }
-    if (!positive_definite(std::span(innovation.noise).first(m * m), m)) return {Outcome::bad_covariance};
-  }
-
-  if (!core.known) {
-    core.known = true;
-    for (std::size_t i = 0; i < m; ++i) {
-      core.x[innovation.index[i]] += innovation.y[i];
-      for (std::size_t j = 0; j < m; ++j)
-        core.P.at(innovation.index[i], innovation.index[j]) = innovation.noise[i * m + j];
-    }
-    wrap_angles(core.x);
-    return {Outcome::used, 0, 0};
-  }
-  const double gate = sample.part == Part::pose    ? sensor.pose_rejection_threshold
-                      : sample.part == Part::twist ? sensor.twist_rejection_threshold
-                                                   : sensor.acceleration_rejection_threshold;
-  const Correction correction = correct(core.x, core.P, innovation, gate);
-  if (correction.is == Correction::Is::singular) return {Outcome::bad_covariance};
-  return {correction.is == Correction::Is::used ? Outcome::used : Outcome::gated, correction.squared_distance,
-          m};
-}
-
-Processed process(const Spec& spec, const Vector& noise, Core& core, const Sample& sample) {
-  if (core.known && sample.stamp > core.at) predict(core.x, core.P, noise, (sample.stamp - core.at).s());
-  core.at = sample.stamp, core.sensor = sample.sensor, core.part = sample.part;
-  const Processed result = compare(spec, core, sample);
-  if (sound_core(core)) return result;
-  // The next sample begins again.
-  Core first = first_core(spec);
-  first.at = core.at, first.sensor = core.sensor, first.part = core.part;
-  core = std::move(first);
-  return {Outcome::diverged};
-}
 
 void count(State& state, const Sample& sample, const Processed& result, std::vector<Report>* reports) {
   SensorRecord& record = state.sensors[sample.sensor];
@@ -218,7 +87,9 @@ Outcome take(const Spec& spec, State& state, std::size_t sensor, Time stamp, ToS
 
 /// Begins again. What waits for a time that is far ahead now is dropped as `early` afterwards.
 void start_again(const Spec& spec, State& state) {
-  state.core = first_core(spec);
+  Core first = first_core(spec);
+  keep_datum(spec, state.core, first);
+  state.core = std::move(first);
   state.checkpoints.clear();
   state.history.clear();
   for (SensorRecord& each : state.sensors) each.heard = false;
@@ -299,6 +170,8 @@ Status Spec::check(const Node& node, const std::string& path) const {
     return node.error("history, future or gravity is out of range", "0 to 60 s, 0 to 60 s, 0 to 100 m/s^2",
                       path);
   if (sensors.size() > 32) return node.error("there are too many sensors", "at most 32", path + "/sensors");
+  if (slots() > ExtraStates::most_slots)
+    return node.error("there are too many differential sensors", "at most 5", path + "/sensors");
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::string at = path + "/sensors/" + std::to_string(i);
     for (std::size_t j = 0; j < i; ++j)
@@ -312,6 +185,21 @@ Status Spec::check(const Node& node, const std::string& path) const {
   }
   return {};
 }
+
+std::size_t Spec::clone_slot(std::size_t sensor) const {
+  std::size_t slot = 0;
+  for (std::size_t i = 0; i < sensor; ++i) slot += sensors[i].differential;
+  return slot;
+}
+
+std::optional<std::size_t> Spec::datum_slot() const {
+  if (datum) return std::nullopt;
+  for (const Sensor& each : sensors)
+    if (each.kind == SensorKind::gps) return clone_slot(sensors.size());
+  return std::nullopt;
+}
+
+std::size_t Spec::slots() const { return clone_slot(sensors.size()) + (datum_slot() ? 1 : 0); }
 
 Result<State> begin(const Spec& spec) {
   for (std::size_t i = 0; i < spec.sensors.size(); ++i)
@@ -333,11 +221,7 @@ std::optional<std::size_t> find_sensor(const Spec& spec, std::string_view name) 
 Outcome add(const Spec& spec, State& state, std::size_t sensor, const msg::Odometry& message) {
   return take(spec, state, sensor, message.header.stamp, [&](const Sensor& of, Samples& out) {
     SL_CHECK(of.kind == SensorKind::odometry);
-    const Outcome pose = to_samples(of, message.pose, out);
-    if (pose != Outcome::queued && pose != Outcome::unmeasured) return pose;
-    const Outcome twist = to_samples(of, message.twist, out);
-    if (twist != Outcome::queued && twist != Outcome::unmeasured) return twist;
-    return out.count ? Outcome::queued : Outcome::unmeasured;
+    return to_samples(of, message, out);
   });
 }
 
@@ -447,7 +331,8 @@ bool State::fits(const Spec& spec) const {
   const auto stamped = [](Time at) { return at >= Time{-1} && at <= last_stamp; };
   const auto complete = [&](const Core& each) {
     if (!stamped(each.at) || !sound_core(each) || !finite(each.P.padded)) return false;
-    if (each.memories.size() != spec.sensors.size()) return false;
+    if (each.memories.size() != spec.sensors.size() || !each.extra.sound(spec.slots(), most_core))
+      return false;
     return std::all_of(each.memories.begin(), each.memories.end(), [&](const Memory& memory) {
       return stamped(memory.at) && finite(memory.value) && finite(memory.covariance);
     });

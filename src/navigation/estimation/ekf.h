@@ -12,6 +12,13 @@
 /// Order      samples are processed in the order (stamp, sensor, part of the message), whatever the order of arrival: with a
 ///            late one the filter goes back to a state from before it and does all again. The result is the same to the bit.
 /// Begin      the first sample that can be used sets the components it measures, and their covariance.
+/// Differences count from a copy of the pose at the sensor's last measurement, whose errors the filter knows (extra_states.h): ways add
+///            up without passing through velocities, however the robot moved between. A difference that meets a filter
+///            before any other sample sets velocities. One that is rejected leaves the copy when its errors are independent: the
+///            next difference is longer.
+/// Datum      without one, the first fix is the antenna where the filter then thinks it is. The datum's place in W is a state of three
+///            numbers, as unsure as that fix and that place were, and later fixes improve it. The antenna's arm is turned by the
+///            estimated orientation, whose errors count.
 /// History    of `history` seconds before the newest sample processed, at most 4096 samples. What is older is `late`.
 /// Errors     each measurement has an Outcome, counted for each sensor. None stops the filter or changes it silently.
 /// Limits     acceleration is taken as the derivative of the velocity in B (ekf_model.h). A filter that has become too sure
@@ -22,6 +29,7 @@
 #include <string_view>
 #include <vector>
 
+#include "navigation/estimation/extra_states.h"
 #include "navigation/estimation/sensor.h"
 
 namespace sandlot::navigation::ekf {
@@ -55,22 +63,32 @@ struct Spec {
     visit(Field{"initial_estimate_covariance", "",
                 "Variances of the 15 components before the first measurement.", 0, 1e12},
           s.initial_covariance);
-    visit(Field{"datum", "", "Place of the world frame; none: the first fix is where the robot then is."},
+    visit(Field{"datum", "",
+                "Place of the world frame, exactly known; none: the first fix is where the robot then is, as "
+                "well "
+                "as both are known."},
           s.datum);
     visit(Field{"sensors", "", "Sensors that are fused.", 0, 0, Field::none, 32}, s.sensors);
   }
   Status check(const Node& node, const std::string& path) const;
+  /// Slot of a sensor's earlier pose (extra_states.h).
+  std::size_t clone_slot(std::size_t sensor) const;
+  /// Slot of the datum's place, or none: it is given, or there is no receiver.
+  std::optional<std::size_t> datum_slot() const;
+  std::size_t slots() const;
 };
 
 /// What differences and relative poses of a sensor count from.
 struct Memory {
   bool set = false;
+  bool cloned = false;  ///< the filter holds its own pose of that time
   Time at;
   std::array<double, 6> value{};
   Triangle covariance{};
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"set", "", "Whether there is one."}, s.set);
+    visit(Field{"cloned", "", "Whether the filter holds its own pose of that time."}, s.cloned);
     visit(Field{"at", "s", "Time of the pose."}, s.at);
     visit(Field{"value", "", "Pose: x y z roll pitch yaw."}, s.value);
     visit(Field{"covariance", "", "Lower triangle of its covariance."}, s.covariance);
@@ -86,6 +104,8 @@ struct Core {
   Vector x{};
   Matrix P;
   std::vector<Memory> memories;  ///< one for each sensor
+  ExtraStates extra;             ///< of spec.slots()
+  bool datum_set = false;        ///< the slot of the datum's place is
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"known", "", "Whether a measurement has been used."}, s.known);
@@ -96,6 +116,8 @@ struct Core {
           s.x);
     visit(Field{"covariance", "", "Covariance of the estimate, row by row."}, s.P);
     visit(Field{"memories", "", "Poses that differences and relative poses count from."}, s.memories);
+    visit(Field{"extra", "", "Earlier poses of the filter, and what the datum is to be moved by."}, s.extra);
+    visit(Field{"datum_set", "", "Whether a fix has placed the datum."}, s.datum_set);
   }
 };
 
@@ -143,7 +165,8 @@ struct State {
     visit(Field{"history", "", "Measurements since the first of them."}, s.history);
     visit(Field{"queue", "", "Measurements that wait."}, s.queue);
     visit(Field{"sensors", "", "Records of the sensors."}, s.sensors);
-    visit(Field{"datum", "", "Place of the world frame."}, s.datum);
+    visit(Field{"datum", "", "Place of the world frame; of the first fix, before `extra` moves it."},
+          s.datum);
     visit(Field{"rewinds", "1", "Times that the filter went back for late measurements."}, s.rewinds);
     visit(Field{"resets", "1", "Times that it began again."}, s.resets);
   }

@@ -123,6 +123,8 @@ TEST(Ekf, OrderOfArrivalDoesNotMatter) {
       EXPECT_NEAR(ordered.state.core.P.at(i, j), delayed.state.core.P.at(i, j), 1e-12);
   }
   EXPECT_EQ(ordered.state.core.x, delayed.state.core.x);  // and to the bit
+  EXPECT_EQ(ordered.state.core.extra.x, delayed.state.core.extra.x);
+  EXPECT_EQ(ordered.state.core.extra.covariance, delayed.state.core.extra.covariance);
   std::size_t gated = 0;
   for (std::size_t s = 0; s < 4; ++s) {
     std::uint64_t a = 0, b = 0;
@@ -448,6 +450,15 @@ TEST(Ekf, DamagedStatesDoNotFit) {
   EXPECT_TRUE(broken([](State& s) { std::swap(s.checkpoints[0], s.checkpoints[1]); }));
   EXPECT_TRUE(broken([](State& s) { s.core.at = Time{INT64_MAX}; }));
   EXPECT_TRUE(broken([](State& s) { s.checkpoints.clear(); }));
+  rig.spec.sensors[0].differential = true;  // a filter with an earlier pose has more numbers
+  EXPECT_FALSE(rig.state.fits(rig.spec));
+  rig.start();
+  for (int i = 1; i < 50; ++i) rig.give(0, pose_at(0.1 * i, {}));
+  EXPECT_TRUE(rig.state.fits(rig.spec));
+  EXPECT_TRUE(broken([](State& s) { s.core.extra.x.pop_back(); }));
+  EXPECT_TRUE(broken([](State& s) { s.core.extra.covariance.pop_back(); }));
+  EXPECT_TRUE(broken([](State& s) { s.checkpoints[1].extra.x[2] = NAN; }));
+  EXPECT_TRUE(broken([](State& s) { s.core.extra.row(0, 1)[ExtraStates::column(0, 1)] = -1; }));
 }
 
 TEST(Ekf, MapToOdom) {

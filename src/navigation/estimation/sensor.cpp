@@ -184,6 +184,8 @@ Status Sensor::check(const Node& node, const std::string& path) const {
     return error("an imu has no positions", "false", "differential");
   if (relative && (!poses || !has(X, Vx)))
     return error("there are no poses to count from the first one", "false", "relative");
+  if (differential && pose_errors == PoseErrors::as_twist && kind != SensorKind::odometry)
+    return error("only an odometry has a twist beside its pose", "independent or accumulated", "pose_errors");
   if (relative && differential)
     return error("differences do not depend on the first pose", "one of differential and relative",
                  "relative");
@@ -194,6 +196,31 @@ Status Sensor::check(const Node& node, const std::string& path) const {
   if (!(std::abs(norm(mount.q) - 1) < 1e-6))
     return error("the orientation is not a rotation", "a quaternion of length 1", "mount");
   return {};
+}
+
+Outcome to_samples(const Sensor& sensor, const msg::Odometry& odometry, Samples& out) {
+  const bool by_twist = sensor.differential && sensor.pose_errors == PoseErrors::as_twist;
+  msg::PoseWithCovariance pose = odometry.pose;
+  if (by_twist) {
+    pose.covariance = {};
+    for (std::size_t i = 0; i < 6; ++i) pose.covariance[7 * i] = 1;
+  }
+  const Outcome posed = to_samples(sensor, pose, out);
+  if (posed != Outcome::queued && posed != Outcome::unmeasured) return posed;
+  if (by_twist && posed == Outcome::queued) {
+    // Errors of the movement, about B at its end: they come from S as those of the twist do.
+    Matrix6 C = matrix_of(odometry.twist.covariance);
+    const Matrix3 R = rotation_of(normalised(sensor.mount.q));
+    const Matrix3 arm = cross_columns(sensor.mount.p, R);
+    if (!level(sensor)) C = transformed(C, R, arm);
+    deviate(sensor, Vx, C);
+    if (!sound_covariance(C, chosen_of(sensor, Part::pose), true)) return Outcome::bad_covariance;
+    if (level(sensor) && !mounted_at_base(sensor)) C = transformed(C, R, arm);
+    out.part[out.count - 1].covariance = triangle_of(C);
+  }
+  const Outcome moving = to_samples(sensor, odometry.twist, out);
+  if (moving != Outcome::queued && moving != Outcome::unmeasured) return moving;
+  return out.count ? Outcome::queued : Outcome::unmeasured;
 }
 
 Outcome to_samples(const Sensor& sensor, const msg::PoseWithCovariance& pose, Samples& out) {
@@ -331,29 +358,51 @@ Outcome to_samples(const Sensor& sensor, const msg::NavSatFix& fix, const Datum&
   return Outcome::queued;
 }
 
-void difference(const Sample& from, const Sample& to, PoseErrors errors, double dt_s, Sample& out) {
-  const Pose a = pose_of(from.value), b = pose_of(to.value);
-  Quat turn = conjugate(a.q) * b.q;
-  if (turn.w < 0) turn = {-turn.w, -turn.x, -turn.y, -turn.z};
-  const Vec3 axis{turn.x, turn.y, turn.z};
+Vec3 turn_vector(Quat q) {
+  if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
+  const Vec3 axis{q.x, q.y, q.z};
   const double s = norm(axis);
-  const Vec3 w_B = (s > 1e-12 ? 2 * math::atan2(s, turn.w) / s : 2) * axis / dt_s;
-  // Along an arc the chord points where B looked half way.
-  const Quat middle = a.q * normalised(Quat{1 + turn.w, turn.x, turn.y, turn.z});
-  const Vec3 way_W = b.p - a.p, v_B = rotate_inverse(middle, way_W) / dt_s;
-  out = to;
-  out.part = Part::twist;
-  out.value = {v_B.x, v_B.y, v_B.z, w_B.x, w_B.y, w_B.z};
+  return (s > 1e-12 ? 2 * math::atan2(s, q.w) / s : 2) * axis;
+}
 
+Movement movement(const Sample& from, const Sample& to, PoseErrors errors, double dt_s) {
+  const Pose a = pose_of(from.value), b = pose_of(to.value);
+  const Quat q_AW = conjugate(a.q);
+  Movement out{{rotate(q_AW, b.p - a.p), normalised(q_AW * b.q)}};
+  Matrix6 C = square_of(to.covariance);
+  if (errors == PoseErrors::as_twist) {
+    for (auto& row : C)
+      for (double& each : row) each *= dt_s * dt_s;
+    out.covariance = triangle_of(transformed(C, rotation_of(out.X_AB.q), Matrix3{}));
+    return out;
+  }
   // Errors of a: moves, and turns of the way. d = b - a - turn_a x way = b - [I, -[way]x] a
-  Matrix3 U = cross_columns(way_W, rotation_of({}));
+  Matrix3 U = cross_columns(b.p - a.p, rotation_of({}));
   for (auto& row : U)
     for (double& each : row) each = -each;
   const Matrix6 of_a = transformed(square_of(from.covariance), rotation_of({}), U);
-  Matrix6 C = square_of(to.covariance);
   const double sign = errors == PoseErrors::independent ? 1 : -1;
   for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) C[i][j] = (C[i][j] + sign * of_a[i][j]) / (dt_s * dt_s);
+    for (std::size_t j = 0; j < 6; ++j) C[i][j] += sign * of_a[i][j];
+  out.covariance = triangle_of(transformed(C, rotation_of(q_AW), Matrix3{}));
+  return out;
+}
+
+void difference(const Sample& from, const Sample& to, PoseErrors errors, double dt_s, Sample& out) {
+  const Movement moved = movement(from, to, errors, dt_s);
+  const Quat turn = moved.X_AB.q.w < 0
+                        ? Quat{-moved.X_AB.q.w, -moved.X_AB.q.x, -moved.X_AB.q.y, -moved.X_AB.q.z}
+                        : moved.X_AB.q;
+  const Vec3 w_B = turn_vector(turn) / dt_s;
+  // Along an arc the chord points where B looked half way.
+  const Quat middle = normalised(Quat{1 + turn.w, turn.x, turn.y, turn.z});
+  const Vec3 v_B = rotate_inverse(middle, moved.X_AB.p) / dt_s;
+  out = to;
+  out.part = Part::twist;
+  out.value = {v_B.x, v_B.y, v_B.z, w_B.x, w_B.y, w_B.z};
+  Matrix6 C = square_of(moved.covariance);
+  for (auto& row : C)
+    for (double& each : row) each /= dt_s * dt_s;
   out.covariance = triangle_of(transformed(C, rotation_of(conjugate(middle)), Matrix3{}));
 }
 

@@ -5,8 +5,8 @@
 /// Frames     poses are those of the sensor's frame S in the world frame W, twists and accelerations are in S; `mount` is
 ///            the pose of S in base_link B. A sample, `config` and `deviation` are about B.
 /// Covariance of turns: about the axes of the message's frame, in rad^2; taken for that of roll, pitch and yaw.
-/// Limits     the mount's lever arm is not applied to accelerations. For gps it is turned by the estimated orientation,
-///            whose error is not counted.
+/// Limits     the mount's lever arm is not applied to accelerations. Errors of differences count as white, so that independent
+///            errors of poses, of which each is in two differences, count twice.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,11 +36,13 @@ inline std::span<const EnumName<SensorKind>> enum_names(SensorKind) {
 /// What the errors of two poses in a row have in common.
 enum class PoseErrors : std::uint8_t {
   independent,  ///< nothing: the errors of both count in the difference
-  accumulated   ///< all of the earlier one's, as in odometry: the growth of the covariance counts
+  accumulated,  ///< all of the earlier one's, as in odometry: the growth of the covariance counts
+  as_twist      ///< what the message's twist says, which is the mean velocity since the message before
 };
 inline std::span<const EnumName<PoseErrors>> enum_names(PoseErrors) {
   static constexpr EnumName<PoseErrors> names[] = {{"independent", PoseErrors::independent},
-                                                   {"accumulated", PoseErrors::accumulated}};
+                                                   {"accumulated", PoseErrors::accumulated},
+                                                   {"as_twist", PoseErrors::as_twist}};
   return names;
 }
 
@@ -63,10 +65,18 @@ struct Sensor {
     visit(Field{"config", "",
                 "Whether each of x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az is used."},
           s.config);
-    visit(Field{"differential", "", "Whether differences of poses are used, as velocities."}, s.differential);
+    visit(
+        Field{
+            "differential", "",
+            "Whether poses count from the one before: x y z roll pitch yaw are then the way and turn since, "
+            "in the base link's axes at that time."},
+        s.differential);
     visit(Field{"relative", "", "Whether poses count from the first one."}, s.relative);
     visit(Field{"pose_errors", "",
-                "Errors of successive poses, for differences: independent, or accumulated as in odometry."},
+                "Errors of successive poses, for differences: independent; accumulated as in odometry, whose "
+                "covariance grows; or as_twist: the covariance of an odometry's twist, which is its mean "
+                "velocity "
+                "since the message before."},
           s.pose_errors);
     visit(Field{"longest_gap", "s", "Longest time over which a difference of poses is used.", 1e-3, 1e6},
           s.longest_gap_s);
@@ -84,11 +94,13 @@ struct Sensor {
           s.remove_gravitational_acceleration);
     visit(Field{"queue_size", "1", "Messages that may wait for their time.", 1, 1000}, s.queue_size);
     visit(Field{"mount", "", "Pose of the sensor in base_link."}, s.mount);
-    visit(Field{"deviation", "",
-                "Standard deviations of the 15 components in place of the messages' covariances; 0: the "
-                "message's. Empty: all of them are the messages'.",
-                0, 1e6, Field::none, states},
-          s.deviation);
+    visit(
+        Field{
+            "deviation", "",
+            "Standard deviations of the 15 components in place of the messages' covariances, of differences "
+            "those of the mean velocity; 0: the message's. Empty: all of them are the messages'.",
+            0, 1e6, Field::none, states},
+        s.deviation);
   }
   Status check(const Node& node, const std::string& path) const;
 };
@@ -106,17 +118,17 @@ constexpr std::size_t first_index(Part part) {
 
 /// Answer to a measurement.
 enum class Outcome : std::uint8_t {
-  queued,          ///< waits for advance()
-  used,            ///< corrected the estimate
-  gated,           ///< was too far from the prediction
-  started,         ///< is the first one of a differential source, or the first after a gap
-  late,            ///< is older than the history
-  early,           ///< has a stamp too far in the future
-  duplicate,       ///< has the stamp of an earlier one of its sensor
-  full,            ///< found the queue full
-  unmeasured,      ///< holds nothing that is to be used (no fix, covariance -1)
-  bad_stamp,       ///< has a negative stamp or one after the year 2096
-  bad_value,       ///< holds a number that is not finite, above 1e9, or no rotation
+  queued,      ///< waits for advance()
+  used,        ///< corrected the estimate
+  gated,       ///< was too far from the prediction
+  started,     ///< is the first one of a differential source, or the first after a gap, or places the datum
+  late,        ///< is older than the history
+  early,       ///< has a stamp too far in the future
+  duplicate,   ///< has the stamp of an earlier one of its sensor
+  full,        ///< found the queue full
+  unmeasured,  ///< holds nothing that is to be used (no fix, covariance -1)
+  bad_stamp,   ///< has a negative stamp or one after the year 2096
+  bad_value,   ///< holds a number that is not finite, above 1e9, or no rotation
   bad_covariance,  ///< has a covariance that is not finite, symmetric and positive definite
   diverged,        ///< met an estimate that had grown beyond bounds: the filter begins again
 };
@@ -172,6 +184,7 @@ struct Samples {
 };
 
 /// Turn a message into samples; stamps and indices of sensors are the caller's. The answer is `queued` when it can be used.
+Outcome to_samples(const Sensor& sensor, const msg::Odometry& odometry, Samples& out);
 Outcome to_samples(const Sensor& sensor, const msg::PoseWithCovariance& pose, Samples& out);
 Outcome to_samples(const Sensor& sensor, const msg::TwistWithCovariance& twist, Samples& out);
 Outcome to_samples(const Sensor& sensor, const msg::Imu& imu, double gravity_mps2, Samples& out);
@@ -183,6 +196,16 @@ Outcome usable_fix(const Sensor& sensor, const msg::NavSatFix& fix);
 /// @param altitude_m  for a fix without one
 geodesy::Geodetic place_of(const msg::NavSatFix& fix, double altitude_m);
 
+/// Way and turn from one pose to a later one, in the axes of B at the earlier one, and their covariance; errors of turns are
+/// about these axes. With `as_twist` the later sample's covariance is that of its twist.
+/// @param dt_s  > 0
+struct Movement {
+  Pose X_AB;
+  Triangle covariance{};
+};
+Movement movement(const Sample& from, const Sample& to, PoseErrors errors, double dt_s);
+/// Turn as axis times angle.
+Vec3 turn_vector(Quat q);
 /// Twist of B that leads from one pose to a later one: mean over the time between.
 /// @param dt_s  > 0
 void difference(const Sample& from, const Sample& to, PoseErrors errors, double dt_s, Sample& out);

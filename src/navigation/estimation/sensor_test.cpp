@@ -234,6 +234,12 @@ TEST(EkfSensor, SpecsThatAreRefused) {
               s.differential = true;
             }),
             "/sensors/0/differential");
+  EXPECT_EQ(error([](Sensor& s) {
+              s.kind = SensorKind::pose;
+              s.differential = true;
+              s.pose_errors = PoseErrors::as_twist;
+            }),
+            "/sensors/0/pose_errors");
 }
 
 }  // namespace
