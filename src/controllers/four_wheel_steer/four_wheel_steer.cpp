@@ -155,7 +155,10 @@ void FourWheelSteer::move(double dt_s) {
   const Fit fit = rolled(governor_.wheels(), turned_, headed_);
   const auto [s, c] = math::sincos(state.heading_rad);
   const double dx = c * fit.x_m - s * fit.y_m, dy = s * fit.x_m + c * fit.y_m;
-  const double d = std::sqrt(dx * dx + dy * dy), square = fit.rmsd_m * fit.rmsd_m;
+  const double told_apart_m = spec.wheel_radius_m * spec.encoder_resolution_rad;
+  const double d = std::sqrt(dx * dx + dy * dy),
+               square = fit.rmsd_m * fit.rmsd_m +
+                        told_apart_m * told_apart_m / (6 * static_cast<double>(turned_.size()));
   const double var_d = spec.distance_variance * d + square;
   const double var_a = spec.heading_variance * d + spec.turn_variance * std::abs(fit.turn_rad) +
                        square / (arm_m_ * arm_m_);

@@ -15,7 +15,9 @@
 ///            encoders: no motion.
 /// Covariance P' = F P F^T + G Q G^T of x, y and heading, F that of the motion, Q diagonal in C: `distance_variance` d + e^2
 ///            along x and y, `heading_variance` d + `turn_variance` |a| + e^2 / L^2 of the heading, with the way d, the turn a, the residual
-///            e and the root mean square distance L of the wheels from their middle. z, roll and pitch count as known.
+///            e and the root mean square distance L of the wheels from their middle. With encoders of the resolution q, e^2 is more
+///            by (r q)^2 / (6 n): two readings, each wrong by up to q / 2, for each of n wheels of radius r. Without, a robot that stands
+///            is exactly known to stand, which filters refuse. z, roll and pitch count as known.
 /// Safety     a command older than `timeout` counts as stop, and so does any command while the latest JointState is.
 /// Limits     motion in the plane; wheel places and radii are keys, since a controller does not see the model. Wheels that the steering axis
 ///            does not meet (castor offset) are not modelled, nor encoders that wrap.
@@ -47,6 +49,7 @@ struct Spec {
   double timeout_s = 0.5;
   std::string base_frame = "base_link";
   double distance_variance = 1e-4, heading_variance = 1e-4, turn_variance = 1e-3;
+  double encoder_resolution_rad = 0;
 
   static void fields(auto& s, auto&& visit) {
     constexpr unsigned none = Field::none, tunable = Field::tunable;
@@ -101,6 +104,9 @@ struct Spec {
     visit(Field{"heading_variance", "rad^2/m", "Variance of the heading per distance.", 0, 100},
           s.heading_variance);
     visit(Field{"turn_variance", "rad^2/rad", "Variance of the heading per turn.", 0, 100}, s.turn_variance);
+    visit(Field{"encoder_resolution", "rad",
+                "Turn of a wheel that its encoder tells apart: least variance of each step. 0: none.", 0, 1},
+          s.encoder_resolution_rad);
   }
 };
 

@@ -180,6 +180,24 @@ TEST(FourWheelSteer, CovarianceOfAStraightWayIsThatOfItsFormula) {
   EXPECT_NEAR(P[1], 0, 1e-15);
 }
 
+// A robot that stands for a second, with encoders of 4096 steps: of each reading the error is q / sqrt(12), of four wheels' way in a
+// step r q / sqrt(6 * 4).
+TEST(FourWheelSteer, EncodersAreNotExact) {
+  const double q = 2 * math::pi / 4096, floor = wheel_radius_m * wheel_radius_m * q * q / 24;
+  Robot robot({.encoder_resolution_rad = q});
+  robot.run({}, 0.1);
+  robot.controller.state.covariance = {};
+  robot.run({}, 1);
+  const double arm_squared = 2 * 0.21 * 0.21;
+  const auto& message = robot.odometry();
+  EXPECT_NEAR(message.twist.covariance[0], floor / (tick_s * tick_s), 1e-12);
+  EXPECT_NEAR(message.twist.covariance[35], floor / (tick_s * tick_s) / arm_squared, 1e-12);
+  EXPECT_NEAR(message.pose.covariance[0], 100 * floor, 1e-12);
+  Robot exact;
+  exact.run({}, 0.1);
+  EXPECT_EQ(exact.odometry().twist.covariance[0], 0);
+}
+
 TEST(FourWheelSteer, StopsWhenCommandsOrJointStatesCeaseOrAreNoNumbers) {
   const auto rate = [](const Robot& robot) { return robot.ordered()[4]; };
   Robot robot;

@@ -114,9 +114,11 @@ void VisualOdometry::step(const Observation& obs, Command& cmd) {
   const Time stamp = obs.get(eyes_.front().image).stamp;
   const vo::Step step = spec.eyes == Eyes::stereo ? advance_pair(obs) : advance_single(obs);
   if (step.outcome == vo::Outcome::first_image) state.posed_at = stamp;
+  state.gap = state.gap || step.gap;
   if (!vo::has_pose(step.outcome) && step.outcome != vo::Outcome::first_image) return;
   tell(step, stamp);
   state.posed_at = stamp;
+  state.gap = false;
   cmd.publish(odometry_, out_);
 }
 
@@ -129,8 +131,7 @@ void VisualOdometry::tell(const vo::Step& step, Time stamp) {
   const Pose X_OB = X_BS_ * vo::pose_W(track) * X_SB;
   out_.header.stamp = stamp;
   out_.pose.pose = {X_OB.p, normalised(X_OB.q)};
-  out_.pose.covariance = in_axes(of_base(vo::composed(track.keyframe_errors, track.X_KS, track.errors)),
-                                 X_OB.q);
+  out_.pose.covariance = in_axes(of_base(vo::covariance_S(track)), X_OB.q);
   const double dt_s = (stamp - state.posed_at).s();
   out_.twist = {};
   if (dt_s <= 0) return;
@@ -138,6 +139,9 @@ void VisualOdometry::tell(const vo::Step& step, Time stamp) {
   out_.twist.twist = {moved.p / dt_s, turn_of(moved.q) / dt_s};
   out_.twist.covariance = of_base(step.motion_errors);
   for (double& each : out_.twist.covariance) each /= dt_s * dt_s;
+  if (!state.gap) return;
+  // The motion is that since the gap.
+  for (std::size_t i = 0; i < 6; ++i) out_.twist.covariance[7 * i] += vo::unknown_variance;
 }
 
 bool VisualOdometry::fits() const {

@@ -5,8 +5,8 @@
 /// Reads      with `eyes: stereo` <camera>/left/image, right/image and both camera_infos (a stereo_camera); with `eyes: mono` the Image
 ///            and the CameraInfo of <camera>. Focal lengths, centre and baseline are those of CameraInfo; pictures are rgb8, bgr8 or mono8.
 /// Publishes  `odometry`, nav_msgs/Odometry of the base link, once for each picture that has a pose: in <robot>/<frame>, which is the base
-///            link at the first picture. Pose covariance grows with keyframes; the twist is the motion since the last picture with a pose.
-///            After a gap (navigation/visual_odometry/track.h) positions have the variance 9999.
+///            link at the first picture. Pose covariance grows with keyframes and by `growth`; the twist is the motion since the last
+///            picture with a pose. After a gap (navigation/visual_odometry/track.h) positions, and the first twist, have the variance 9999.
 /// Method, limits   navigation/visual_odometry/stereo_odometry.h, mono_odometry.h. What became of the pictures stands in the state:
 ///            `track.counts`.
 /// State      holds the keyframe's pictures: 0.6 MB for two of 640 x 480.
@@ -52,13 +52,15 @@ struct State {
   navigation::vo::StereoView pair;  ///< keyframe
   navigation::vo::View single;      ///< keyframe of one eye
   navigation::vo::Track track;
-  Time posed_at;  ///< of the last picture with a pose
+  Time posed_at;     ///< of the last picture with a pose
+  bool gap = false;  ///< there has been a gap since
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"pair", "", "Keyframe of two eyes."}, s.pair);
     visit(Field{"single", "", "Keyframe of one eye."}, s.single);
     visit(Field{"track", "", "Pose of the camera since the first picture."}, s.track);
     visit(Field{"posed_at", "s", "Time of the latest picture with a pose."}, s.posed_at);
+    visit(Field{"gap", "", "Whether there has been a gap since."}, s.gap);
   }
 };
 

@@ -160,6 +160,35 @@ TEST(VisualOdometry, SaysNothingOfPicturesThatHaveNoPose) {
   EXPECT_EQ(t.published().count, 1u);
 }
 
+// Away long enough for a gap: the next message's twist is over time in which it did not see, and says so.
+TEST(VisualOdometry, TheTwistAcrossAGapIsNotKnown) {
+  Trial t(Pose{{0, 0, camera_height_m}, quat_from_axis_angle({0, 1, 0}, camera_pitch_rad)});
+  const std::vector<Pose> way = arc(3, 0.03, 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    t.look(way[i]);
+    t.step(0.1);
+  }
+  EXPECT_EQ(t.published().count, 3u);
+  const double sure = t.published().message.twist.covariance[0];
+  EXPECT_LT(sure, 0.1);
+  // A picture of another place has features but nothing in common: after `patience` of them there is a gap.
+  for (int i = 0; t.odometry.state.track.gaps == 0 && i < 6; ++i) {
+    t.look(camera_at(-2, 1.5, 2.5));
+    t.step(0.1);
+  }
+  ASSERT_EQ(t.odometry.state.track.gaps, 1u);
+  EXPECT_EQ(t.published().count, 3u);
+  t.look(camera_at(-1.98, 1.5, 2.5));
+  t.step(0.1);
+  ASSERT_EQ(t.published().count, 4u);
+  EXPECT_GT(t.published().message.twist.covariance[0], 9999);
+  EXPECT_GT(t.published().message.pose.covariance[0], 9998);
+  t.look(camera_at(-1.96, 1.5, 2.5));
+  t.step(0.1);
+  ASSERT_EQ(t.published().count, 5u);
+  EXPECT_LT(t.published().message.twist.covariance[0], 0.1);
+}
+
 TEST(VisualOdometry, RefusesAStateThatCannotBe) {
   Trial t(Pose{});
   t.look(camera_at(-2, 0, 0));

@@ -23,9 +23,8 @@ struct ExtraStates {
   std::vector<double>
       covariance;  ///< a row of stride() for each number in x: with the 15, and with the slots
 
-  explicit ExtraStates(std::size_t slots = 0) : x(slots * per_slot) {
-    covariance.resize(x.size() * stride());
-  }
+  ExtraStates() = default;
+  explicit ExtraStates(std::size_t slots) : x(slots * per_slot) { covariance.resize(x.size() * stride()); }
   std::size_t slots() const { return x.size() / per_slot; }
   std::size_t stride() const { return column(slots(), 0); }
   static constexpr std::size_t column(std::size_t slot, std::size_t i) {

@@ -467,6 +467,7 @@ Step advance(const MonoSpec& spec, MonoState& state, const GreyImage& image) {
     return answer(motion.outcome);
   }
   enter_pose(track, motion.X_KS, motion.errors, step);
+  grow(track, spec.growth, step);
   if (track.keyframe_inliers == 0) track.keyframe_inliers = static_cast<std::uint32_t>(step.inliers);
   const double flow_px = mono_median_flow(matches, motion.inliers);
   const bool far = motion.outcome == Outcome::turned ? flow_px > 0.5 * spec.matching.radius_px

@@ -59,6 +59,7 @@ struct MonoSpec {
   double min_inlier_share = 0.35, max_position_deviation_m = 0.2;
   double keyframe_motion_px = 15, keyframe_share = 0.6;
   int patience = 2;
+  Growth growth;
   std::uint64_t seed = 1;
 
   static void fields(auto& s, auto&& visit) {
@@ -95,6 +96,8 @@ struct MonoSpec {
     visit(Field{"patience", "1", "Images in a row without a pose after which one becomes the keyframe.", 0,
                 1000},
           s.patience);
+    visit(Field{"growth", "", "Errors that all points have in common, such as those of calibration."},
+          s.growth);
     visit(Field{"seed", "1", "Seed of the random samples.", 0, 9007199254740992.0}, s.seed);
   }
   /// keyframe_motion lies within the matching's radius.

@@ -328,6 +328,7 @@ Step advance(const StereoSpec& spec, StereoState& state, const GreyImage& left, 
     return answer(motion.outcome);
   }
   enter_pose(track, motion.X_KS, motion.errors, step);
+  grow(track, spec.growth, step);
   if (track.keyframe_inliers == 0) track.keyframe_inliers = static_cast<std::uint32_t>(step.inliers);
   if (stereo_median_flow(matches, motion.inliers) > spec.keyframe_motion_px ||
       step.inliers < spec.keyframe_share * track.keyframe_inliers) {

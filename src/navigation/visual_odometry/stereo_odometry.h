@@ -17,8 +17,8 @@
 /// Keyframes  a new one when the median flow exceeds keyframe_motion, or the inliers become fewer than keyframe_share of those of
 ///            the keyframe's first image; after `patience` images in a row without a pose too, which is a gap.
 /// Errors     an Outcome; the pose changes with `moved` only. Robust to dark, uniform, noisy images and to other sizes.
-/// Limits     most of the matches are on what stands still. Errors common to all points are not in the covariance: wrong
-///            calibration, rolling shutter, exposure blur. No loop closure, no bundle adjustment.
+/// Limits     most of the matches are on what stands still. Errors common to all points, by wrong calibration, rolling shutter,
+///            exposure blur, are in the covariance as `growth` alone, a random walk. No loop closure, no bundle adjustment.
 /// Random     base/random.h, by (seed, number of the image).
 /// Cost       15 to 19 ms for two images of 640 x 480 pixels, more than half of it features.
 /// Source     A. Geiger, J. Ziegler, C. Stiller, StereoScan (2011), sec. IV; defaults in part as in its libviso2. Weights: first
@@ -55,6 +55,7 @@ struct StereoSpec {
   double min_inlier_share = 0.35, max_position_deviation_m = 0.2;
   double keyframe_motion_px = 15, keyframe_share = 0.6;
   int patience = 2;
+  Growth growth;
   std::uint64_t seed = 1;
 
   static void fields(auto& s, auto&& visit) {
@@ -90,6 +91,8 @@ struct StereoSpec {
     visit(Field{"patience", "1", "Images in a row without a pose after which one becomes the keyframe.", 0,
                 1000},
           s.patience);
+    visit(Field{"growth", "", "Errors that all points have in common, such as those of calibration."},
+          s.growth);
     visit(Field{"seed", "1", "Seed of the random samples.", 0, 9007199254740992.0}, s.seed);
   }
   /// keyframe_motion lies within the matching's radius.

@@ -21,6 +21,7 @@ StereoSpec stereo_small() {
   spec.matching.max_disparity_px = 64;
   spec.matching.bucket_px = 32;
   spec.keyframe_motion_px = 8;
+  spec.growth = {0, 0};  // the scenes' cameras are exactly known
   return spec;
 }
 

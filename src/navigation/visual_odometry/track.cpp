@@ -1,6 +1,9 @@
 #include "navigation/visual_odometry/track.h"
 
 #include <Eigen/Dense>
+#include <cmath>
+
+#include "base/math.h"
 
 namespace sandlot::navigation::vo {
 namespace {
@@ -40,12 +43,17 @@ Covariance composed(const Covariance& AB, const Pose& X_BC, const Covariance& BC
 
 Pose pose_W(const Track& track) { return track.X_WK * track.X_KS; }
 
+Covariance covariance_S(const Track& track) {
+  Covariance out = composed(track.keyframe_errors, track.X_KS, track.errors);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += track.drift[i];
+  return out;
+}
+
 Covariance covariance_W(const Track& track) {
   const Eigen::Matrix3d R = track_rotation(pose_W(track).q);
   TrackMatrix turn = TrackMatrix::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R;
-  const Covariance own = composed(track.keyframe_errors, track.X_KS, track.errors);
-  return track_covariance(turn * track_matrix(own) * turn.transpose());
+  return track_covariance(turn * track_matrix(covariance_S(track)) * turn.transpose());
 }
 
 void enter_pose(Track& track, const Pose& X_KS, const Covariance& errors, Step& step) {
@@ -56,6 +64,16 @@ void enter_pose(Track& track, const Pose& X_KS, const Covariance& errors, Step& 
   track.X_KS = X_KS;
   track.errors = errors;
   track.failures_in_row = 0;
+}
+
+void grow(Track& track, const Growth& growth, Step& step) {
+  const Quat q = step.motion.q;
+  const double way = norm(step.motion.p), turn = 2 * math::atan2(norm(Vec3{q.x, q.y, q.z}), std::abs(q.w));
+  Covariance more{};
+  for (std::size_t i = 0; i < 6; ++i)
+    more[7 * i] = i < 3 ? growth.distance_variance * way : growth.turn_variance * turn;
+  for (std::size_t i = 0; i < 6; ++i) step.motion_errors[7 * i] += more[7 * i];
+  track.drift = composed(track.drift, step.motion, more);
 }
 
 void enter_keyframe(Track& track, Step& step) {

@@ -7,6 +7,8 @@
 ///            X_true = X * Exp(error). In W's axes for covariance_W.
 /// Keyframes  images are compared with the keyframe, so that a robot that stands does not drift: errors accumulate with
 ///            keyframes, not with images.
+/// Growth     what errors of the points do not tell, above all wrong calibration: variances that grow with the way and the turn
+///            (Growth), which keyframes do not take back.
 /// Gap        a new keyframe without a motion from the old one: the pose stays, its variances become unknown_variance.
 #include <array>
 #include <cstdint>
@@ -19,6 +21,22 @@ namespace sandlot::navigation::vo {
 using Covariance = std::array<double, 36>;
 /// Variance of what is not known, [m^2] or [rad^2], as in viso2_ros.
 inline constexpr double unknown_variance = 9999;
+
+/// Errors that all points of an image have in common, as a random walk. Defaults are for a calibration whose scale is wrong by 0.4 %, which
+/// on a way of 40 m is as much as the walk's sqrt(7e-4 * 40) = 0.17 m, and by 0.7 % in a turn of 360 degrees, sqrt(3e-4 * 2 pi) =
+/// 2.5 degrees: a rotation of one eye by 0.02 degrees shifts disparities by 0.12 pixels of some 14 at 3 m.
+struct Growth {
+  double distance_variance = 7e-4;  ///< [m^2/m]
+  double turn_variance = 3e-4;      ///< [rad^2/rad]
+
+  static void fields(auto& s, auto&& visit) {
+    visit(
+        Field{"distance_variance", "m^2/m", "Variance of the position along each axis per distance.", 0, 100},
+        s.distance_variance);
+    visit(Field{"turn_variance", "rad^2/rad", "Variance of the turn about each axis per turn.", 0, 100},
+          s.turn_variance);
+  }
+};
 
 /// Answer to an image.
 enum class Outcome : std::uint8_t {
@@ -55,6 +73,7 @@ struct Track {
   Pose motion;                             ///< from the image with a pose before the last one to it
   Pose X_WK, X_KS;                         ///< X_KS of the last image with a pose
   Covariance keyframe_errors{}, errors{};  ///< of X_WK and X_KS
+  Covariance drift{};                      ///< of X_WS, by growth
   std::uint64_t images = 0, keyframes = 0, gaps = 0;
   std::uint32_t failures_in_row = 0;             ///< images without a pose since the last one with one
   std::uint32_t keyframe_inliers = 0;            ///< of the first image after the keyframe; 0: none yet
@@ -66,6 +85,7 @@ struct Track {
     visit(Field{"from_keyframe", "", "Pose of the last image in the keyframe."}, s.X_KS);
     visit(Field{"keyframe_errors", "", "Covariance of the keyframe's pose."}, s.keyframe_errors);
     visit(Field{"errors", "", "Covariance of the last image's pose in the keyframe."}, s.errors);
+    visit(Field{"drift", "", "What of the last image's covariance grew with the way."}, s.drift);
     visit(Field{"images", "1", "Number of images."}, s.images);
     visit(Field{"keyframes", "1", "Number of keyframes."}, s.keyframes);
     visit(Field{"gaps", "1", "Number of keyframes without a motion from the one before."}, s.gaps);
@@ -90,12 +110,16 @@ struct Step {
 };
 
 Pose pose_W(const Track& track);
+/// Covariance of pose_W in the axes of S.
+Covariance covariance_S(const Track& track);
 /// Covariance of pose_W: positions in W's axes, turns about W's axes, as in nav_msgs/Odometry.
 Covariance covariance_W(const Track& track);
 
 /// Covariance of X_AC = X_AB * X_BC from those of its factors, independent.
 Covariance composed(const Covariance& AB, const Pose& X_BC, const Covariance& BC);
 
+/// Angle and length of a motion make the track and the step less sure; after enter_pose.
+void grow(Track& track, const Growth& growth, Step& step);
 /// Enters the pose of an image in the keyframe; fills the step's motion.
 void enter_pose(Track& track, const Pose& X_KS, const Covariance& errors, Step& step);
 /// The last image with a pose becomes the keyframe.

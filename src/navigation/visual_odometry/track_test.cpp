@@ -72,6 +72,41 @@ TEST(VoTrack, PosesAndErrorsAccumulate) {
   EXPECT_NEAR(last.motion_errors[7], 8e-4, 1e-12);
 }
 
+// Ten images straight on by 0.1 m, keyframes or not: the variance of each axis is 10 * 0.1 k. Then ten turns of 0.1 rad on the spot:
+// the heading has t, and what it was before stays.
+TEST(VoTrack, GrowsWithTheWayAndTheTurn) {
+  constexpr double k = 2e-3, t = 5e-3;
+  for (const int images_per_keyframe : {1, 5, 100}) {
+    Track track;
+    int number = 0;
+    const auto image = [&](const Pose& moved) {
+      Step step;
+      enter_pose(track, track.X_KS * moved, {}, step);
+      grow(track, {k, t}, step);
+      if (++number % images_per_keyframe == 0) enter_keyframe(track, step);
+      return step;
+    };
+    Step step;
+    for (int i = 0; i < 10; ++i) step = image({{0.1, 0, 0}, {}});
+    EXPECT_NEAR(step.motion_errors[0], 0.1 * k, 1e-12);
+    EXPECT_NEAR(step.motion_errors[35], 0, 1e-12);
+    Covariance P = covariance_W(track);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(P[7 * i], k, 1e-12);
+    EXPECT_NEAR(P[35], 0, 1e-12);
+    for (int i = 0; i < 10; ++i) step = image({{}, quat_from_rpy(0, 0, 0.1)});
+    EXPECT_NEAR(step.motion_errors[35], 0.1 * t, 1e-12);
+    P = covariance_W(track);
+    EXPECT_NEAR(P[35], t, 1e-12);
+    EXPECT_NEAR(P[0], k, 1e-12);
+    // Away from where it turned, the heading's error moves it across: by 1 m, t.
+    image({{1, 0, 0}, {}});
+    P = covariance_S(track);
+    EXPECT_NEAR(P[0], 2 * k, 1e-12);
+    EXPECT_NEAR(P[7], 2 * k + t, 1e-12);
+    EXPECT_NEAR(P[35], t, 1e-12);
+  }
+}
+
 TEST(VoTrack, GapsLeaveThePoseUnknown) {
   Track track;
   Step step;
