@@ -474,6 +474,58 @@ TEST(Cameras, StereoSeesTheDisparityOfTheDepth) {
   EXPECT_EQ(info.header.frame_id, "robot1/eye_optical");
 }
 
+// 300 cameras, each with a seed of its own: deviations of what they publish, within five of the estimator's, s / sqrt(2 * 300). The
+// pictures of a camera whose right eye is turned by a about the vertical are moved by f a there, here some pixels.
+TEST(Cameras, StereoIsCalibratedWithErrors) {
+  const auto calibration = [](const char* focal, const char* centre, const char* baseline,
+                              const char* rotation) {
+    Node node = with({{"baseline", "0.5"}});
+    Node keys = Node::map();
+    keys.set("focal", Node::scalar(focal));
+    keys.set("centre", Node::scalar(centre));
+    keys.set("baseline", Node::scalar(baseline));
+    keys.set("rotation", Node::scalar(rotation));
+    node.set("calibration", std::move(keys));
+    return node;
+  };
+  const auto squared = [](double x) { return x * x; };
+  double focal = 0, centre = 0, baseline = 0;
+  constexpr int cameras = 300;
+  for (int i = 0; i < cameras; ++i) {
+    Stage stage("stereo_camera");
+    stage.seed = static_cast<std::uint64_t>(i);
+    ASSERT_TRUE(stage.add("eye", calibration("0.01", "0.5", "0.03", "0")));
+    const msg::CameraInfo& left = stage.topic<msg::CameraInfo>("eye/left/camera_info").message;
+    const msg::CameraInfo& right = stage.topic<msg::CameraInfo>("eye/right/camera_info").message;
+    EXPECT_EQ(left.k, right.k);
+    EXPECT_EQ(left.p[0], left.k[0]);
+    EXPECT_EQ(left.p[5], left.p[0]);
+    EXPECT_EQ(left.p[2], left.k[2]);
+    focal += squared(left.p[0] / 40 - 1);
+    centre += squared(left.p[2] - 39.5) + squared(left.p[6] - 29.5);
+    baseline += squared(-right.p[3] / right.p[0] / 0.5 - 1);
+  }
+  const double bound = 5 / std::sqrt(2.0 * cameras);
+  EXPECT_NEAR(std::sqrt(focal / cameras), 0.01, 0.01 * bound);
+  EXPECT_NEAR(std::sqrt(centre / (2 * cameras)), 0.5, 0.5 * bound);
+  EXPECT_NEAR(std::sqrt(baseline / cameras), 0.03, 0.03 * bound);
+
+  double moved = 0;
+  for (int i = 0; i < 20; ++i) {
+    Stage stage("stereo_camera");
+    stage.seed = static_cast<std::uint64_t>(i);
+    stage.ball("b", "ball", {2, -0.25, 0}, 0.1);
+    ASSERT_TRUE(stage.add("eye", calibration("0", "0", "0", "0.05")));
+    stage.draw();
+    const auto left = red(stage.picture("eye/left/image")), right = red(stage.picture("eye/right/image"));
+    EXPECT_NEAR(left[0], 44.5, 0.2);
+    moved += squared(left[0] - right[0] - 10);
+    EXPECT_NEAR(stage.topic<msg::CameraInfo>("eye/right/camera_info").message.p[3], -20, 1e-9);
+  }
+  // f a = 2 pixels, of 20 cameras within four deviations of their mean square.
+  EXPECT_NEAR(std::sqrt(moved / 20), 2, 2 * 4 / std::sqrt(40.0));
+}
+
 float depth_at(const msg::Image& image, std::uint32_t u, std::uint32_t v) {
   float d = 0;
   std::memcpy(&d, image.data.data() + v * image.step + 4 * u, 4);

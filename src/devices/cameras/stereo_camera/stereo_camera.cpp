@@ -29,11 +29,39 @@ void to_grey(std::span<const std::uint8_t> pixels, cameras::Format format, std::
 
 }  // namespace
 
+Calibration calibrated(const CalibrationKeys& keys, double scale, Stream random) {
+  const auto drawn = [&](double deviation) { return scale * deviation * random.normal(); };
+  Calibration out;
+  // A focal length or a baseline of nothing would be no camera.
+  out.focal = std::max(drawn(keys.focal), -0.9);
+  out.baseline = std::max(drawn(keys.baseline), -0.9);
+  out.column_px = drawn(keys.centre_px), out.row_px = drawn(keys.centre_px);
+  Vec3 turn;
+  for (std::size_t i = 0; i < 3; ++i) turn[i] = drawn(keys.rotation_rad);
+  const double angle = norm(turn);
+  if (angle > 0) out.q_right = quat_from_axis_angle(turn / angle, angle);
+  return out;
+}
+
+void Calibration::apply(msg::CameraInfo& info) const {
+  for (auto* const m : {&info.k[0], &info.k[4], &info.p[0], &info.p[5]}) *m *= 1 + focal;
+  info.p[3] *= (1 + focal) * (1 + baseline);
+  for (auto* const m : {&info.k[2], &info.p[2]}) *m += column_px;
+  for (auto* const m : {&info.k[5], &info.p[6]}) *m += row_px;
+}
+
 Disparities::Disparities(Topic<msg::DisparityImage>* topic, Topic<msg::PointCloud2>* points,
-                         const optics::Lens& lens, const Spec& spec, const std::string& frame_id)
-    : topic_(topic), points_(points), width_(lens.width), height_(lens.height), baseline_m_(spec.baseline_m) {
+                         const optics::Lens& lens, const Spec& spec, const Calibration& errors,
+                         const std::string& frame_id)
+    : topic_(topic),
+      points_(points),
+      width_(lens.width),
+      height_(lens.height),
+      baseline_m_(spec.baseline_m * (1 + errors.baseline)) {
   msg::CameraInfo info;
   cameras::fill_info(info, lens, frame_id);
+  true_fb_m_ = info.k[0] * spec.baseline_m;
+  errors.apply(info);
   fx_ = info.k[0], cx_ = info.k[2], fy_ = info.k[4], cy_ = info.k[5];
   msg::DisparityImage& message = topic->message;
   message.header.frame_id = frame_id;
@@ -99,23 +127,26 @@ Result<Camera> Camera::create(const DeviceBuild& build, Spec spec) {
                        "the pictures of a stereo camera are rectified", "a pinhole without distortion");
   SL_ASSIGN(const optics::Lens lens, cameras::lens_of(spec, build));
   const std::string optical = build.frame("optical", cameras::X_S_optical);
+  const Calibration errors = calibrated(spec.calibration, spec.errors,
+                                        Stream(build.seed, build.key, Purpose::initial, 0));
   Camera camera{std::move(spec), {}, {}, {}, {}, {}};
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string side = i == 0 ? "left" : "right";
     Side& s = camera.sides[i];
     s.mount = cameras::CameraMount(build, lens);
-    if (i == 1) s.mount.X_LS = s.mount.X_LS * Pose{{0, -camera.spec.baseline_m, 0}, {}};
+    if (i == 1) s.mount.X_LS = s.mount.X_LS * Pose{{0, -camera.spec.baseline_m, 0}, errors.q_right};
     s.picture = cameras::ColorImage(build, build.publish<msg::Image>(image, (side + "/image").c_str()), lens,
                                     camera.spec.format, camera.spec.noise, optical, i);
     s.info = build.publish<msg::CameraInfo>(image, (side + "/camera_info").c_str());
     cameras::fill_info(s.info->message, lens, optical, i == 0 ? 0 : camera.spec.baseline_m);
+    errors.apply(s.info->message);
   }
   const auto disparities = [&](Level level, const std::string& name) {
     auto* const topic = build.publish<msg::DisparityImage>(level, name.c_str());
     auto* const points = camera.spec.points
                              ? build.publish<msg::PointCloud2>(level, (name + "/points").c_str())
                              : nullptr;
-    return Disparities(topic, points, lens, camera.spec, optical);
+    return Disparities(topic, points, lens, camera.spec, errors, optical);
   };
   camera.matched = disparities(disparity, "disparity");
   camera.computed = disparities(closed_form, "closed_form");

@@ -14,6 +14,10 @@
 ///          With `points: true` PointCloud2 on <device>/disparity/points and <device>/closed_form/points, organised, NaN where there
 ///          is no disparity. Any of the levels together; without `image` pictures are drawn for matching alone and not published.
 /// Errors of pixels   each eye has its own.
+/// Calibration   with errors (`calibration`), drawn once when the camera is made, times `errors` as it then is. What is published (CameraInfo;
+///          f, T and points of disparities) has a focal length, centre and baseline that are not the true ones, the same for both eyes;
+///          and the right eye looks a little elsewhere than pictures that were rectified well would. Typical of a calibration with a
+///          board are 0.1 % of the focal length, 0.5 pixels, 0.3 % of the baseline and 0.02 degrees.
 /// Lens     pinhole without distortion.
 /// Cost     two pictures; matching as told in disparity.h; `closed_form` one ray per pixel.
 /// Source   sensor_msgs/CameraInfo, stereo_msgs/DisparityImage.
@@ -23,10 +27,38 @@
 
 namespace sandlot::stereo_camera {
 
+/// Standard deviations of a calibration.
+struct CalibrationKeys {
+  double focal = 0, centre_px = 0, baseline = 0, rotation_rad = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"focal", "1", "Deviation of the published focal length, by the true one.", 0, 0.2}, s.focal);
+    visit(
+        Field{"centre", "px", "Deviation of the published optical centre, along rows and columns.", 0, 1000},
+        s.centre_px);
+    visit(Field{"baseline", "1", "Deviation of the published baseline, by the true one.", 0, 0.2},
+          s.baseline);
+    visit(Field{"rotation", "rad", "Deviation of the right eye's turn about each axis.", 0, 0.2},
+          s.rotation_rad);
+  }
+};
+
+/// Errors of one camera's calibration.
+struct Calibration {
+  double focal = 0, baseline = 0;  ///< published by true, less 1
+  double column_px = 0, row_px = 0;
+  Quat q_right;
+  /// Into a message that is true.
+  void apply(msg::CameraInfo& info) const;
+};
+/// @param scale  times all deviations
+Calibration calibrated(const CalibrationKeys& keys, double scale, Stream random);
+
 struct Spec : cameras::LensKeys, cameras::ExposureKeys {
   double rate_hz = 30, baseline_m = 0.12;
   cameras::Format format = cameras::Format::rgb8;
   ImageNoiseSpec noise;
+  CalibrationKeys calibration;
   cameras::MatchKeys matching;
   double match_std = 0.25;
   bool points = false;
@@ -39,6 +71,8 @@ struct Spec : cameras::LensKeys, cameras::ExposureKeys {
     visit(Field{"format", "", "Format of the pixels."}, s.format);
     cameras::ExposureKeys::fields(s, visit);
     visit(Field{"noise", "1", "Errors of the pictures."}, s.noise);
+    visit(Field{"calibration", "1", "Errors of what is published about the camera; 0: it is true."},
+          s.calibration);
     visit(Field{"matching", "",
                 "Search for disparities at level disparity; count and min also bound those of closed_form."},
           s.matching);
@@ -58,10 +92,10 @@ class Disparities {
   Disparities() = default;
   /// @param points  null: none are made
   Disparities(Topic<msg::DisparityImage>* topic, Topic<msg::PointCloud2>* points, const optics::Lens& lens,
-              const Spec& spec, const std::string& frame_id);
+              const Spec& spec, const Calibration& errors, const std::string& frame_id);
   /// Room for the next disparities, one per pixel; cameras::no_disparity where there is none.
   std::span<float> values() { return values_; }
-  double focal_baseline_m() const { return fx_ * baseline_m_; }
+  double focal_baseline_m() const { return true_fb_m_; }
   void publish(Time now);
 
  private:
@@ -70,7 +104,8 @@ class Disparities {
   Topic<msg::DisparityImage>* topic_ = nullptr;
   Topic<msg::PointCloud2>* points_ = nullptr;
   int width_ = 0, height_ = 0;
-  double fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0, baseline_m_ = 0;
+  double fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0, baseline_m_ = 0;  ///< as published
+  double true_fb_m_ = 0;
   std::vector<float> values_;
 };
 
