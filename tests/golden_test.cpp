@@ -26,7 +26,6 @@ constexpr Golden goldens[] = {
     {"scenarios/fig1_robot.yaml --duration 10s", "7d799912c67bc39a"},
     {"scenarios/mario.yaml --duration 10s", "b8e49a88e8a755bc"},
     {"scenarios/mario_drive.yaml --duration 20s", "51e06cefbaeb7a2b"},
-    {"scenarios/mario_drive.yaml --duration 20s", "3a9cb0db7bb76f98"},
     {"scenarios/mario_step.yaml", "e25337ab27670b5d"},
     {"scenarios/yard.yaml --duration 5s", "fdb66b73be7b9b5e"},
     {"scenarios/creatures.yaml --duration 3s", "d867a75aaccd8cf2"},
