@@ -122,9 +122,12 @@ void expect_page_of_the_paper(const TestFolder& scratch) {
   int orders = 0;
   for (const auto& topic : graph["topics"]) {
     if (topic["publishers"] == nlohmann::json{"mario/base"} && topic["readers"].size() == 1) ++orders;
-    if (topic["name"] == "/mario/joystick/cmd_vel") EXPECT_EQ(topic["readers"], nlohmann::json{"mario/base"});
-    if (topic["name"] == "/mario/eyes/odometry")
+    if (topic["name"] == "/mario/joystick/cmd_vel") {
+      EXPECT_EQ(topic["readers"], nlohmann::json{"mario/base"});
+    }
+    if (topic["name"] == "/mario/eyes/odometry") {
       EXPECT_EQ(topic["readers"], (nlohmann::json{"mario/estimator", "mario/locator"}));
+    }
   }
   EXPECT_EQ(orders, 8);  // four position, four velocity controllers
   for (const auto& entry : fs::directory_iterator(scratch.path / "out"))

@@ -60,8 +60,9 @@ TEST(Graph, NodesOfALayerDoNotOverlapAndNeighboursLieInOrder) {
   for (const auto& [a, first] : nodes) {
     EXPECT_GT(first.x - first.half_width, 0);
     for (const auto& [b, second] : nodes)
-      if (a < b && first.y == second.y)
+      if (a < b && first.y == second.y) {
         EXPECT_GE(std::abs(first.x - second.x), first.half_width + second.half_width + 9.8) << a << " " << b;
+      }
   }
   // A parent stands over the middle of its leaves.
   EXPECT_NEAR(nodes.at("n0").x, (nodes.at("n2").x + nodes.at("n4").x + nodes.at("n6").x) / 3, 1);
