@@ -2,7 +2,7 @@
 // reads them: where things must lie is worked out by hand from its numbers. Pictures stay in BUILD/page_tests.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync } from "node:fs";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { chromium } from "playwright-core";
 import { Scratch, Served, until } from "./served.mjs";
@@ -33,7 +33,7 @@ function makeWorld(keys) {
   return scratch.write("place.yaml", `version: 1
 name: place
 world: place.sdf
-plugins: [${join(process.cwd(), build, "test_plugins/guide.so")}]
+plugins: [${resolve(build, "test_plugins/guide.so")}]
 physics: planar
 time: {step: 10 ms}
 robots:
