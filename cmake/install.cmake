@@ -4,8 +4,8 @@ include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
 install(TARGETS sandlot_bench_command RUNTIME DESTINATION bin OPTIONAL)  # `./dev bench` builds it
-add_dependencies(sandlot selforg_library)  # what builds the command can install
-install(TARGETS sandlot_library selforg_library LIBRARY DESTINATION lib)
+add_dependencies(sandlot selforg_library navigation_library)  # what builds the command can install
+install(TARGETS sandlot_library selforg_library navigation_library LIBRARY DESTINATION lib)
 set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
   -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
@@ -41,3 +41,7 @@ configure_file(cmake/selforgConfig.cmake.in ${CMAKE_BINARY_DIR}/package/selforgC
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/selforgConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/package/selforgConfig.cmake ${CMAKE_BINARY_DIR}/package/selforgConfigVersion.cmake
   DESTINATION lib/cmake/selforg)
+configure_file(cmake/sandlot_navigationConfig.cmake.in ${CMAKE_BINARY_DIR}/package/sandlot_navigationConfig.cmake @ONLY)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/sandlot_navigationConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/package/sandlot_navigationConfig.cmake
+  ${CMAKE_BINARY_DIR}/package/sandlot_navigationConfigVersion.cmake DESTINATION lib/cmake/sandlot_navigation)

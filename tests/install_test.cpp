@@ -167,6 +167,58 @@ TEST(SlowInstall, AnAgentWithoutSimulatorNeedsLibselforgAlone) {
   EXPECT_EQ(run.out, shell(build_folder() + "/selforg_wheels --steps 2000 --seed 3").out);
 }
 
+/// A program with the navigation library alone and the controller in the run, fed the same messages: the same bits. Both filters of the
+/// scenario, of which one has the satellite receiver and its datum.
+TEST(SlowInstall, TheFilterAloneGivesTheEstimatesOfTheRunThatWasRecorded) {
+  const Package package;
+  package.build("estimate_recording");
+  const std::string program = package.built("estimate_recording") + "/estimate_recording",
+                    recording = package.scratch.file("run.mcap");
+  EXPECT_THAT(shell("ldd " + program).out,
+              AllOf(HasSubstr("libsandlot_navigation"), Not(HasSubstr("libsandlot.so")),
+                    Not(HasSubstr("ode")), Not(HasSubstr("embree"))));
+  const Printed run = package.run(
+      "run " + package.prefix +
+      "/share/sandlot/scenarios/vineyard_loop.yaml --headless --duration 3s --record " + recording);
+  ASSERT_EQ(run.exit_code, 0) << run.out;
+  const auto exported = [&](const std::string& topic) {
+    const std::string file = package.scratch.file(topic.substr(0, topic.find('/')) + ".jsonl");
+    EXPECT_EQ(package.run("topic echo " + recording + " /mario/" + topic + " --json > " + file).exit_code, 0);
+    return file;
+  };
+  const std::string wheels = " --program base/odometry=" + exported("base/odometry"),
+                    eyes = " --program eyes/odometry=" + exported("eyes/odometry"),
+                    inertia = " --device imu=" + exported("imu/imu"),
+                    gps = " --device gps=" + exported("gps/fix"),
+                    fused = " --expect " + exported("estimator/odometry"),
+                    located = " --expect " + exported("locator/odometry");
+  const auto estimate = [&](const std::string& filter, const std::string& arguments) {
+    return shell(program + " " + package.example("estimate_recording/filters.yaml") + " " + filter +
+                 arguments + " > " + package.scratch.file("estimates.jsonl"));
+  };
+  // 3 s of steps of 10 ms, and the one before the first.
+  const std::string all_equal = "301 estimates equal the recorded ones to the bit, 0 differ\n";
+  const Printed of_fused = estimate("estimator", wheels + eyes + inertia + fused),
+                of_located = estimate("locator", wheels + eyes + inertia + gps + located);
+  EXPECT_EQ(of_fused.out, all_equal);
+  EXPECT_EQ(of_fused.exit_code, 0);
+  EXPECT_EQ(of_located.out, all_equal);
+  EXPECT_EQ(of_located.exit_code, 0);
+
+  // The comparison sees when one sensor is missing, and when one comes a step early.
+  for (const std::string& sensors : {eyes + inertia, wheels + inertia, wheels + eyes,
+                                     wheels + inertia + " --device" + eyes.substr(eyes.find(" eyes"))}) {
+    const Printed other = estimate("estimator", sensors + fused);
+    EXPECT_EQ(other.exit_code, 1) << sensors;
+    EXPECT_THAT(other.out, HasSubstr("differ, the first one at")) << sensors;
+  }
+  const Printed wrong = estimate("estimator",
+                                 " --device imu=" + package.example("estimate_recording/filters.yaml"));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.out, HasSubstr("filters.yaml:1: this is no line of `sandlot topic echo --json`"));
+  EXPECT_THAT(estimate("locater", wheels).out, HasSubstr("there is no filter 'locater'"));
+}
+
 /// Paths of the installed headers, from its include folder.
 std::vector<std::string> public_headers(const std::string& include) {
   std::vector<std::string> headers;

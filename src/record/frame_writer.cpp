@@ -63,6 +63,14 @@ Result<FrameWriter> FrameWriter::create(const RecordOptions& options, const Simu
                               std::as_bytes(std::span(options.scenario_text))));
   if (out.wants(recording::tf_static_topic))
     SL_TRY(out.put(recording::tf_static_topic, now, static_transforms(simulation)));
+  // What the first tick's programs act upon was measured before it.
+  Status first_messages;
+  simulation.for_each_topic([&](const TopicBase& topic, const std::string&) {
+    if (topic.count == 0 || topic.stamp != now || !first_messages) return;
+    auto to = out.target(topic.name(), topic.info());
+    first_messages = to ? out.put(**to, now, topic.data()) : Status(std::move(to).error());
+  });
+  SL_TRY(first_messages);
   if (!recording.hashes) return out;
   // The state that the recording begins with, so that a replay can check what it starts from.
   msg::StateHash first;
