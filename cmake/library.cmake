@@ -30,6 +30,9 @@ set_target_properties(sandlot_bench_command PROPERTIES OUTPUT_NAME sandlot-bench
 # Only `./dev bench` builds it.
 set_target_properties(sandlot_bench sandlot_bench_command PROPERTIES EXCLUDE_FROM_ALL ON)
 target_link_libraries(sandlot_bench_command PRIVATE sandlot_library sandlot_sdformat)
+if(TARGET sandlot_opencv)
+  target_link_libraries(sandlot_bench_command PRIVATE sandlot_opencv)
+endif()
 foreach(name IN LISTS names)
   target_link_libraries(sandlot_bench_command PRIVATE ${${name}})
 endforeach()

@@ -29,22 +29,23 @@ inline Row row(std::string name, std::string unit, double value, double referenc
 }
 
 // The suites; entry.cpp runs them by name.
-std::vector<Row> swarm();      ///< P1: the swarm's scenario, robot by robot
-std::vector<Row> rays();       ///< P2, P5: rays of both kinds of world
-std::vector<Row> images();     ///< P5: pictures against their depth alone
-std::vector<Row> levels();     ///< A8: sensors at their low and at their high levels
-std::vector<Row> physics();    ///< P3: steps of the engines
-std::vector<Row> wheels();     ///< P3: robots on wheels alone
-std::vector<Row> pile();       ///< P3: a pile in the solver for large islands
-std::vector<Row> loading();    ///< P8: files to a simulation
-std::vector<Row> recording();  ///< P11: runs and images into a file
-std::vector<Row> viewer();     ///< P9: what looking at a run costs it
-std::vector<Row> radio();      ///< packets among many robots
-std::vector<Row> lockstep();   ///< P7: a step of a client over TCP
-std::vector<Row> rollers();    ///< P4: a robot on wheels with rollers
-std::vector<Row> match();      ///< P6: a match of twelve robots at its levels
-std::vector<Row> robios();     ///< RoBIOS programs: a time slot, and four robots with cameras
-std::vector<Row> sox();        ///< a learning step of homeokinesis against bare Eigen
+std::vector<Row> swarm();       ///< P1: the swarm's scenario, robot by robot
+std::vector<Row> rays();        ///< P2, P5: rays of both kinds of world
+std::vector<Row> images();      ///< P5: pictures against their depth alone
+std::vector<Row> levels();      ///< A8: sensors at their low and at their high levels
+std::vector<Row> physics();     ///< P3: steps of the engines
+std::vector<Row> wheels();      ///< P3: robots on wheels alone
+std::vector<Row> pile();        ///< P3: a pile in the solver for large islands
+std::vector<Row> loading();     ///< P8: files to a simulation
+std::vector<Row> recording();   ///< P11: runs and images into a file
+std::vector<Row> viewer();      ///< P9: what looking at a run costs it
+std::vector<Row> radio();       ///< packets among many robots
+std::vector<Row> lockstep();    ///< P7: a step of a client over TCP
+std::vector<Row> rollers();     ///< P4: a robot on wheels with rollers
+std::vector<Row> match();       ///< P6: a match of twelve robots at its levels
+std::vector<Row> robios();      ///< RoBIOS programs: a time slot, and four robots with cameras
+std::vector<Row> navigation();  ///< estimators and planners against plain ones
+std::vector<Row> sox();         ///< a learning step of homeokinesis against bare Eigen
 
 /// Processor time of the calling thread: other work on the machine does not count.
 inline double thread_seconds() {

@@ -19,14 +19,23 @@ struct Suite {
   const char* name;
   std::vector<bench::Row> (*run)();
 };
-constexpr Suite suites[] = {{"physics", bench::physics},   {"wheels", bench::wheels},
-                            {"pile", bench::pile},         {"swarm", bench::swarm},
-                            {"rays", bench::rays},         {"images", bench::images},
-                            {"loading", bench::loading},   {"recording", bench::recording},
-                            {"viewer", bench::viewer},     {"rollers", bench::rollers},
-                            {"levels", bench::levels},     {"radio", bench::radio},
-                            {"lockstep", bench::lockstep}, {"robios", bench::robios},
-                            {"match", bench::match},       {"sox", bench::sox}};
+constexpr Suite suites[] = {{"physics", bench::physics},
+                            {"wheels", bench::wheels},
+                            {"pile", bench::pile},
+                            {"swarm", bench::swarm},
+                            {"rays", bench::rays},
+                            {"images", bench::images},
+                            {"loading", bench::loading},
+                            {"recording", bench::recording},
+                            {"viewer", bench::viewer},
+                            {"rollers", bench::rollers},
+                            {"levels", bench::levels},
+                            {"radio", bench::radio},
+                            {"lockstep", bench::lockstep},
+                            {"robios", bench::robios},
+                            {"match", bench::match},
+                            {"sox", bench::sox},
+                            {"navigation", bench::navigation}};
 
 /// A ratio this much over its budget is a mistake in the code; less may be the machine's other work.
 constexpr double guard_factor = 2;

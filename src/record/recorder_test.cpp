@@ -55,6 +55,31 @@ TEST(Glob, StarsAndQuestionMarks) {
   EXPECT_FALSE(glob_matches("", "x"));
 }
 
+/// The programs of tick 1 act upon what was measured when the world was made, so that a program which is fed from the recording needs it.
+TEST_F(RecorderTest, BeginsWithTheMessagesOfTheMomentAtWhichItBegins) {
+  Recorder::Report report;
+  Status status;
+  record({.file = file("r.mcap")}, 20, report, status);
+  ASSERT_TRUE(status) << status.error().text();
+  std::vector<std::string> expected, found;
+  const auto simulation = build(arena("planar", 2));
+  simulation->for_each_topic([&](const TopicBase& topic, const std::string&) {
+    if (topic.count > 0) expected.push_back(topic.name());
+  });
+  EXPECT_GE(expected.size(), 2u) << "a sensor of each rover";
+  const auto reader = mcap::Reader::open(file("r.mcap"));
+  ASSERT_TRUE(reader);
+  mcap::Cursor cursor = reader->messages({.to = 0});
+  while (true) {
+    const auto message = cursor.next();
+    ASSERT_TRUE(message);
+    if (!*message) break;
+    const std::string& topic = (*message)->channel->topic;
+    if (topic.rfind("/rover", 0) == 0) found.push_back(topic);
+  }
+  EXPECT_EQ(found, expected);
+}
+
 TEST_F(RecorderTest, TheProofIsInTheFileAndTheRunDidNotNotice) {
   Recorder::Report report;
   Status status;
