@@ -22,6 +22,8 @@ TEST(Examples, EachFolderStandsAlone) {
     for (const auto& file : fs::directory_iterator(scratch.path)) {
       if (file.path().extension() != ".yaml") continue;
       if (folder.path().filename() == "soccer_team") continue;  // a team is no scenario: soccer_team_test.py
+      if (folder.path().filename() == "estimate_recording")
+        continue;  // filters are none either: install_test.cpp
       ++checked;
       std::ifstream in(file.path());
       std::string text, line;
