@@ -75,6 +75,8 @@ Outcome amcl_admit(const Spec& spec, State& state, const Moment& moment, Time st
     // What was driven until the jump still counts.
     const Pose2 driven = relative(state.X_OB, state.latest_X_OB);
     state.X_OB = compose(moment.X_OB, inverse(driven));
+    if (!is_bounded(state.X_OB))
+      state.X_OB = moment.X_OB;  // at the limit, where a saved state would be refused
     state.at = stamp;
   }
   state.latest_X_OB = moment.X_OB;
@@ -349,6 +351,7 @@ Outcome update(const Model& model, State& state, Workspace& work, const Moment& 
     } else if (state.has_odometry) {
       Stream random = amcl_stream(event, amcl_use_motion, i);
       particle.pose = move(particle.pose, random);
+      if (!is_bounded(particle.pose)) particle.pose = model.free_pose(random);
     }
     const double log_p = model.mean_log_likelihood(work.scan.p_B, particle.pose);
     work.fit[i] = math::exp(log_p);

@@ -338,6 +338,24 @@ TEST(Amcl, BadInputIsAnsweredAndChangesNothing) {
   EXPECT_EQ(update(run.model, state, run.work, jumped, rewound), Outcome::waiting);
 }
 
+// Odometry that jumps to the limit of what is taken, while some way since the last scan used is still to be counted: a saved state is read
+// again.
+TEST(Amcl, OdometryAtItsLimitLeavesAStateThatFits) {
+  AmclRun run(4, amcl_small());
+  ASSERT_TRUE(set_pose(run.model, run.state, run.robot.X_MB, {}));
+  run.drive(3);
+  do run.robot.go(run.world);
+  while (run.scan() != Outcome::waiting || distance(run.state.X_OB, run.state.latest_X_OB) < 0.02);
+  const Time time = run.time + Time::from_s(0.1);
+  const auto scan = scan_at(run.room, run.laser, run.robot.X_MB, time, run.world, 0);
+  for (const double x : {-1e6, 1e6})
+    for (const double y : {-1e6, 1e6}) {
+      State state = run.state;
+      EXPECT_EQ(update(run.model, state, run.work, {time, {x, y, 0}, run.laser.X_BL}, scan), Outcome::jumped);
+      EXPECT_TRUE(state.fits(run.model)) << x << " " << y;
+    }
+}
+
 TEST(Amcl, MapsAndSpecsThatCannotWorkAreRefused) {
   const GridMap good{{3, 3, 0.1, {}}, {0, 0, 0, 0, 100, 0, 0, 0, 0}};
   const auto with_map = [&](auto&& change) {
