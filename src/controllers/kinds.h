@@ -13,6 +13,7 @@
   controller(formation)                 \
   controller(four_wheel_steer)          \
   controller(localise)                  \
+  controller(navigate)                  \
   controller(odometry_estimator)        \
   controller(playback)                  \
   controller(predator)                  \

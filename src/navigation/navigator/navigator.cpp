@@ -143,13 +143,9 @@ Status Navigator::set_goal(const NavGoal& goal) {
   s.goal_theta_rad = goal.heading ? math::wrap_angle(goal.pose.theta) : 0;
   const Vec2 p{goal.pose.x, goal.pose.y};
   if (static_ || s.placed) {
+    if (Status on_map = check_goal_on_map(); !on_map) return fail(on_map.error());
     const GridFrame frame(area_);
     const auto cell = frame.cell(p);
-    if (!cell)
-      return fail(Error{"the goal " + point_text(p) + " is off the map",
-                        "it covers " + number_text(area_.width * area_.resolution_m) + " x " +
-                            number_text(area_.height * area_.resolution_m) + " m from " +
-                            point_text({area_.origin.x, area_.origin.y})});
     // Against what stands in the static map: what the laser saw may go away.
     if (static_) {
       const int reach = static_cast<int>(std::ceil(grown_.circumscribed_m() / area_.resolution_m)) + 2;
@@ -170,6 +166,15 @@ Status Navigator::set_goal(const NavGoal& goal) {
   }
   s.status = NavStatus::planning;
   return {};
+}
+
+Status Navigator::check_goal_on_map() const {
+  const Vec2 p{state_.goal_x_m, state_.goal_y_m};
+  if (GridFrame(area_).cell(p)) return {};
+  return Error{"the goal " + point_text(p) + " is off the map",
+               "it covers " + number_text(area_.width * area_.resolution_m) + " x " +
+                   number_text(area_.height * area_.resolution_m) + " m from " +
+                   point_text({area_.origin.x, area_.origin.y})};
 }
 
 void Navigator::cancel() {
@@ -200,7 +205,6 @@ void Navigator::set_plan(std::vector<PathPose> path) {
 }
 
 void Navigator::place_area(const Pose2& X) {
-  if (state_.placed) return;
   if (!static_) {
     area_.origin = {X.x - area_.width * area_.resolution_m / 2, X.y - area_.height * area_.resolution_m / 2,
                     0};
@@ -366,7 +370,13 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
     return finish({});
   }
   const Pose2 X = *in.X_MB;
-  place_area(X);
+  if (!s.placed) {
+    place_area(X);
+    if (Status on_map = check_goal_on_map(); active && !on_map) {
+      (void)fail(on_map.error());
+      return finish({});
+    }
+  }
   if (in.scan) observe(in, X);
   moving_discs(s.tracker, discs_);
   if (!active) return finish({});

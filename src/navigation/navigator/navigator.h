@@ -214,6 +214,8 @@ class Navigator {
   NavigatorStep step(const NavigatorInput& in);
 
   const NavigatorState& state() const { return state_; }
+  /// Moves the state out, for an owner that keeps it; restore() must give one back before anything else is called.
+  NavigatorState take_state() { return std::move(state_); }
   /// Takes back a saved state; false, and no change, if its sizes do not fit.
   bool restore(NavigatorState state);
   const CostMap& local_map() const { return local_; }
@@ -236,6 +238,8 @@ class Navigator {
   bool command_safe(const Pose2& X, const PlanarTwist& v) const;
   void set_plan(std::vector<PathPose> path);
   Status fail(Error why);
+  /// Whether the goal lies in the area, once that has its place.
+  Status check_goal_on_map() const;
 
   NavigatorSpec spec_;
   DwaSpec dwa_;
