@@ -235,7 +235,7 @@ GridMap Navigator::obstacles(Cell corner, int width, int height, bool with_movin
     for (int x = 0; x < width; ++x)
       if (state_.layer.trust[area_.index({corner.x + x, corner.y + y})] > 0)
         out.occupancy[out.geometry.index({x, y})] = 100;
-  // Of what moves, the discs know more than the cells.
+  // What moves will not be there any more when the robot comes by.
   if (!with_moving) {
     const GridFrame part(out.geometry);
     for (const MovingDisc& disc : discs_) {
@@ -259,15 +259,15 @@ GridMap Navigator::obstacles(Cell corner, int width, int height, bool with_movin
   return out;
 }
 
-Status Navigator::rebuild_local(const Pose2& X, bool with_moving) {
+Status Navigator::rebuild_local(const Pose2& X) {
   const GridFrame frame(area_);
   const auto cell = frame.cell({X.x, X.y});
   if (!cell) return Error{"the robot at " + point_text({X.x, X.y}) + " is off the map", ""};
   const int half = static_cast<int>(std::min(spec_.window_m / 2 / area_.resolution_m, double{max_side})) + 1;
   const Cell low{std::max(0, cell->x - half), std::max(0, cell->y - half)},
       high{std::min(area_.width, cell->x + half + 1), std::min(area_.height, cell->y + half + 1)};
-  SL_ASSIGN(local_, make_cost_map(obstacles(low, high.x - low.x, high.y - low.y, with_moving),
-                                  spec_.inflation, grown_.inscribed_m()));
+  SL_ASSIGN(local_, make_cost_map(obstacles(low, high.x - low.x, high.y - low.y, true), spec_.inflation,
+                                  grown_.inscribed_m()));
   return {};
 }
 
@@ -333,13 +333,24 @@ bool Navigator::command_safe(const Pose2& X, const PlanarTwist& v) const {
     const double t = ahead_s * k / 20;
     const Pose2 at = driven(X, v, t);
     if (footprint_contact(local_, frame, footprint_, at) != Contact::none) return false;
-    for (const MovingDisc& disc : discs_) {
-      const double now = footprint_distance(footprint_, X, disc.centre_M),
-                   then = footprint_distance(footprint_, at, disc.centre_M + t * disc.velocity_M_mps);
-      if (then < disc.radius_m + spec_.disc_clearance_m && then < now) return false;
-    }
   }
-  return true;
+  return !nears_disc(X, v);
+}
+
+bool Navigator::nears_disc(const Pose2& X, const PlanarTwist& v) const {
+  const double speed = math::hypot(v.vx_mps, v.vy_mps);
+  if (speed == 0) return false;
+  const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 1.0);
+  for (const MovingDisc& disc : discs_)
+    for (int k = 1; k <= 20; ++k) {
+      const double t = ahead_s * k / 20;
+      const Vec2 there = disc.centre_M + t * disc.velocity_M_mps;
+      const double then = footprint_distance(footprint_, driven(X, v, t), there);
+      // A robot that stands may have to let a disc come.
+      if (then < disc.radius_m + spec_.disc_clearance_m && then < footprint_distance(footprint_, X, there))
+        return true;
+    }
+  return false;
 }
 
 NavigatorStep Navigator::step(const NavigatorInput& in) {
@@ -381,7 +392,7 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   moving_discs(s.tracker, discs_);
   if (!active) return finish({});
 
-  if (Status local = rebuild_local(X, false); !local) {
+  if (Status local = rebuild_local(X); !local) {
     (void)fail(local.error());
     return finish({});
   }
@@ -449,7 +460,6 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
 
   // Recovery: after `patience` without a way or a velocity, or without progress.
   s.failing_s = failing ? s.failing_s + in.dt_s : 0;
-  if (s.recovery.stage != RecoveryStage::watching) (void)rebuild_local(X, true);
   const std::int32_t round = s.recovery.round;
   const bool can_turn = spec_.chassis != Chassis::car;
   RecoverySpec recovery = spec_.recovery;
@@ -466,7 +476,8 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
                      "given up after " + std::to_string(s.recoveries) + " recoveries"});
     return finish({});
   }
-  if (step.stage != RecoveryStage::watching || step.plan_again) command = step.command;
+  if (step.stage != RecoveryStage::watching || step.plan_again)
+    command = nears_disc(X, step.command) ? PlanarTwist{} : step.command;
   s.status = step.stage != RecoveryStage::watching ? NavStatus::recovering
              : plan_.empty()                       ? NavStatus::planning
                                                    : NavStatus::following;

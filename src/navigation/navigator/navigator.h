@@ -7,7 +7,7 @@
 ///           four_wheel_steer) -> recovery: clear, wait, back up, turn; then failed with the reason
 ///
 /// A new plan replaces a free old one only if it is a tenth shorter, so that the robot does not waver. Objects
-/// that move are taken out of the maps and avoided as discs with a velocity.
+/// that move are taken out of the global map and avoided as discs with a velocity, too.
 ///
 /// Frame    M, that of the pose and of the map. Velocities in the robot's frame. Without a static map, a square of
 ///          `area` about the first pose.
@@ -231,11 +231,13 @@ class Navigator {
   void observe(const NavigatorInput& in, const Pose2& X);
   /// Obstacles of a part of the area.
   GridMap obstacles(Cell corner, int width, int height, bool with_moving) const;
-  Status rebuild_local(const Pose2& X, bool with_moving);
+  Status rebuild_local(const Pose2& X);
   Status make_plan(const Pose2& X);
   bool plan_free() const;
   double remaining(const Pose2& X) const;
   bool command_safe(const Pose2& X, const PlanarTwist& v) const;
+  /// Whether a velocity soon brings the robot nearer to a moving disc than standing would, and too near.
+  bool nears_disc(const Pose2& X, const PlanarTwist& v) const;
   void set_plan(std::vector<PathPose> path);
   Status fail(Error why);
   /// Whether the goal lies in the area, once that has its place.

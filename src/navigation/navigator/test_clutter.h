@@ -150,6 +150,7 @@ struct Clutter {
 struct Mover {
   Vec2 centre, velocity;
   double radius = 0.2;
+  bool touches = false;  ///< the robot
 };
 
 inline msg::LaserScan scan(const Clutter& room, std::span<const Mover> movers, const Pose2& X,

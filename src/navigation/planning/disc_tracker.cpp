@@ -54,7 +54,8 @@ void tracker_correct(const TrackerSpec& spec, Track& t, const TrackerObject& obj
   ++t.seen;
   const double speed = math::hypot(t.vx_mps, t.vy_mps);
   if (!t.moving) {
-    t.moving = speed > spec.min_speed_mps && speed > 2 * std::sqrt(t.vv) && t.seen >= 4 &&
+    // The way it has come is what tells: the velocity of a moment is less sure than people are fast.
+    t.moving = speed > spec.min_speed_mps && t.seen >= 4 &&
                tracker_distance({t.x_m, t.y_m}, {t.first_x_m, t.first_y_m}) >
                    std::max(spec.min_way_m, t.radius_m);
   } else if (speed < spec.min_speed_mps / 2) {

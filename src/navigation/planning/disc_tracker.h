@@ -4,7 +4,7 @@
 /// Neighbouring echoes no further apart than `gap` are one object; objects up to `max_radius` whose edges no
 /// nearer obstacle hides are followed by nearest neighbours, with a filter of constant velocity on each axis. An
 /// object counts as moving once it is faster than `min_speed` and has left the place where it was first seen by
-/// `min_way`, which the change of the visible part of a thing that stands does not reach.
+/// `min_way` and its radius, which the change of the visible part of a thing that stands does not reach.
 ///
 /// Frame    M, the map's.
 /// Errors   none: a scan without echoes ages the tracks.
@@ -23,8 +23,8 @@ namespace sandlot::navigation {
 
 struct TrackerSpec {
   double gap_m = 0.25, max_radius_m = 0.5, match_m = 0.5;
-  double min_speed_mps = 0.15, min_way_m = 0.35, keep_s = 0.7;
-  double position_std_m = 0.04, acceleration_std_mps2 = 1;
+  double min_speed_mps = 0.15, min_way_m = 0.25, keep_s = 0.7;
+  double position_std_m = 0.04, acceleration_std_mps2 = 0.4;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"gap", "m", "Distance of neighbouring echoes of one object.", 0.01, 10}, s.gap_m);

@@ -5,7 +5,9 @@
 /// Samples (vx, vy, w) from the window of the present velocity +- acceleration * period, cut to the limits. Each
 /// is driven over the horizon as an arc; the footprint is checked against the map, and against discs that move on
 /// with their velocities. One after which the robot could not stop along its arc without touching something is
-/// dropped: when a disc turns towards it, it stands. Of the others the least sum wins:
+/// dropped: when a disc turns towards it, it stands. First the arc of pure pursuit to the path's point `lookahead` ahead, or to
+/// nearer ones, is tried: if it is clear as far as that point, and of discs over the horizon, it is driven. So the robot keeps to
+/// the straight way of its plan. Else, of the samples, the least sum wins:
 ///
 ///   goal * |end - target| + path * |end - path| + heading * |angle at the end to the target|
 ///     + obstacle * greatest cost / 252 + contact * (1 - time to contact / horizon)
@@ -32,7 +34,7 @@ struct DwaSpec {
   double acceleration_mps2 = 0.8, turn_acceleration_radps2 = 3;
   double period_s = 0.1, horizon_s = 1.6;
   int vx_samples = 7, vy_samples = 5, w_samples = 15;
-  double lookahead_m = 0.8, disc_clearance_m = 0.1;
+  double lookahead_m = 0.8, disc_clearance_m = 0.1, turn_first_rad = 0.8;
   double goal_weight = 1, path_weight = 0.6, heading_weight = 0.1, obstacle_weight = 0.2,
          contact_weight = 1.5;
   double goal_tolerance_m = 0.15, goal_tolerance_rad = 0.15, max_deviation_m = 3;
@@ -55,6 +57,12 @@ struct DwaSpec {
     visit(Field{"lookahead", "m", "Distance along the path of the point that is driven to.", 0.01, 100},
           s.lookahead_m);
     visit(Field{"disc_clearance", "m", "Distance kept from moving obstacles.", 0, 10}, s.disc_clearance_m);
+    visit(
+        Field{
+            "turn_first", "rad",
+            "Angle to the point that is driven to, from which a differential robot turns on the spot first.",
+            0.01, math::pi},
+        s.turn_first_rad);
     visit(Field{"goal_weight", "1/m", "Weight of the distance to the point that is driven to.", 0, 1000},
           s.goal_weight);
     visit(Field{"path_weight", "1/m", "Weight of the distance from the path.", 0, 1000}, s.path_weight);
