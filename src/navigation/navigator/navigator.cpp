@@ -20,6 +20,8 @@ constexpr std::array<EnumName<NavStatus>, 6> navigator_statuses{{{"idle", NavSta
                                                                  {"failed", NavStatus::failed}}};
 constexpr double navigator_blocked_replan_s = 0.3;  ///< least time between plans because of a blocked way
 
+constexpr double navigator_nearer_m = 0.5;  ///< way to the goal that counts as nearer
+
 bool navigator_by_dwa(Chassis chassis) {
   return chassis == Chassis::differential || chassis == Chassis::omni;
 }
@@ -133,7 +135,8 @@ Status Navigator::set_goal(const NavGoal& goal) {
   plan_.clear();
   s.dwa = {}, s.pursuit = {}, s.recovery = {};
   s.failing_s = s.time_s = s.since_plan_s = 0;
-  s.recoveries = s.plans = 0;
+  s.recoveries = s.plans = s.vain = 0;
+  s.nearest_m = 1e9;
   s.plan_wanted = true;
   s.reason.clear();
   if (!is_finite(goal.pose)) {
@@ -468,10 +471,13 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   const bool tight = footprint_contact(local_, GridFrame(local_.geometry), grown_, X) != Contact::none;
   const RecoveryStep step = recover(recovery, s.recovery, local_, tight ? footprint_ : grown_, X,
                                     s.failing_s > spec_.patience_s, in.dt_s);
-  if (s.recovery.round > round) ++s.recoveries, s.failing_s = 0;
+  if (s.recovery.round > round) ++s.recoveries, ++s.vain, s.failing_s = 0;
+  // A robot that backs up and comes again moves on, but to no end.
+  if (const double rest = remaining(X); !plan_.empty() && rest < s.nearest_m - navigator_nearer_m)
+    s.nearest_m = rest, s.vain = 0;
   if (step.clear_map) clear_near(area_, s.layer, {X.x, X.y}, spec_.window_m / 2);
   if (step.plan_again) s.plan_wanted = true;
-  if (step.stage == RecoveryStage::given_up) {
+  if (step.stage == RecoveryStage::given_up || s.vain > 2 * static_cast<std::uint32_t>(recovery.rounds)) {
     (void)fail(Error{s.reason.empty() ? "the robot gets no further" : s.reason,
                      "given up after " + std::to_string(s.recoveries) + " recoveries"});
     return finish({});

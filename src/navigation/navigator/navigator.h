@@ -12,7 +12,8 @@
 /// Frame    M, that of the pose and of the map. Velocities in the robot's frame. Without a static map, a square of
 ///          `area` about the first pose.
 /// Errors   goals that are not finite, off the map, or in an obstacle of the static map are refused with the
-///          reason at once; others fail with it after the rounds of recovery, after `time_limit` at the latest.
+///          reason at once; others fail with it after the rounds of recovery, after twice as many recoveries that bring
+///          the robot no nearer, and after `time_limit` at the latest.
 ///          Without a pose, or with one less certain than max_pose_std, the robot stands.
 /// Limits   obstacles in the plane of the laser. A goal outside the area is never reached: no rolling map.
 ///          The first pose is taken as free. A car's local plan is its global one: it stops before obstacles and plans
@@ -148,6 +149,8 @@ struct NavigatorState {
   double since_plan_s = 0, failing_s = 0, time_s = 0, speed_mps = 0;
   bool plan_wanted = false;
   std::uint32_t recoveries = 0, plans = 0;
+  double nearest_m = 1e9;  ///< least way to the goal that was left, in steps of `navigator_nearer_m`
+  std::uint32_t vain = 0;  ///< recoveries since then
   double last_vx_mps = 0, last_vy_mps = 0, last_w_radps = 0;
 
   static void fields(auto& s, auto&& visit) {
@@ -173,6 +176,9 @@ struct NavigatorState {
     visit(Field{"plan_wanted", "", "Whether a plan is wanted at once."}, s.plan_wanted);
     visit(Field{"number_of_recoveries", "1", "Number of recoveries since the goal was set."}, s.recoveries);
     visit(Field{"plans", "1", "Number of plans since the goal was set."}, s.plans);
+    visit(Field{"nearest", "m", "Least way to the goal that was left, in coarse steps."}, s.nearest_m);
+    visit(Field{"vain_recoveries", "1", "Number of recoveries since the robot came nearer to the goal."},
+          s.vain);
     visit(Field{"last_vx", "m/s", "Velocity forward of the last command."}, s.last_vx_mps);
     visit(Field{"last_vy", "m/s", "Velocity to the left of the last command."}, s.last_vy_mps);
     visit(Field{"last_w", "rad/s", "Turn rate of the last command."}, s.last_w_radps);

@@ -72,7 +72,7 @@ NavigatorSpec navigator_spec(Chassis chassis = Chassis::differential) {
 }
 
 /// Goals in clutter that the robot does not know beforehand: reached without contact in 98 of 100 rooms, on ways that are no
-/// longer than 1.2 times the optimum in `short_share` of them, and by 5 % on average.
+/// longer than 1.2 times the optimum in `short_share` of them, and 10 % longer on average at most.
 void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis, double short_share) {
   int reached = 0, rooms = 0, short_ways = 0;
   double worst = 0, sum = 0;
@@ -100,7 +100,7 @@ void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis,
   EXPECT_GE(rooms, 0.9 * static_cast<double>(last - first));
   EXPECT_GE(reached, 0.98 * rooms);
   EXPECT_GE(short_ways, short_share * rooms);
-  EXPECT_LE(sum, 1.05 * reached);
+  EXPECT_LE(sum, 1.1 * reached);
   EXPECT_LE(worst, 1.35);
 }
 

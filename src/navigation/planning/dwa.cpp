@@ -227,7 +227,8 @@ DwaStep choose_velocity(const DwaSpec& spec, DwaState& state, const CostMap& map
                  braking_s = dwa_braking_s(spec, v);
     const DwaRollout rollout = round.drive(v);
     const double needed_s = std::max(spec.period_s + braking_s, away / std::max(speed, 1e-3));
-    if (rollout.clear_s() < std::min(spec.horizon_s, needed_s) || !round.safe_from_discs(v, braking_s))
+    if (rollout.map_s < std::min(spec.horizon_s, needed_s) || rollout.disc_s < spec.horizon_s ||
+        !round.safe_from_discs(v, braking_s))
       continue;
     out.status = Driving::driving;
     out.command = v;
