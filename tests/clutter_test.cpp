@@ -1,0 +1,147 @@
+/// The controller navigate in scenarios/clutter.yaml: goals in clutter of several seeds, with movers; snapshots; goals and maps that are bad.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "messages/command.h"
+#include "messages/diagnostic_msgs.h"
+#include "sim/load/load.h"
+#include "sim/test_world.h"
+#include "sim/watch/values.h"
+
+namespace sandlot::test {
+namespace {
+
+std::unique_ptr<Simulation> clutter(std::uint64_t seed, std::vector<formats::Override> overrides = {}) {
+  Diagnostics diagnostics;
+  LoadOptions options;
+  options.seed = seed;
+  options.overrides = overrides;
+  auto setup = load("scenarios/clutter.yaml", options, diagnostics);
+  EXPECT_TRUE(setup) << setup.error().text();
+  return setup ? build(std::move(*setup)) : nullptr;
+}
+
+double value(const Simulation& simulation, const std::string& name) {
+  auto found = NamedValue::find(simulation, name);
+  EXPECT_TRUE(found) << name;
+  return found ? found->read().value_or(NAN) : NAN;
+}
+
+const msg::DiagnosticStatus& status(const Simulation& simulation) {
+  return topic_cast<msg::DiagnosticStatus>(simulation.find_topic("/rover/controller/status"))->message;
+}
+
+CommandRequest goal(double x, double y, const std::string& frame = "") {
+  msg::PoseStamped message;
+  message.header.frame_id = frame;
+  message.pose.p = {x, y, 0};
+  return {"rover/goal_pose", msg::PoseStamped::ros_type, command_bytes(message)};
+}
+
+/// Drives until a number of goals has an end. @return the least gap to a rock [m]
+double drive(Simulation& simulation, double goals, int most_ticks) {
+  double gap = 1e9;
+  for (int i = 0; i < most_ticks; i += 5) {
+    advance(simulation, 5);
+    gap = std::min(gap, value(simulation, "gap"));
+    if (value(simulation, "rover/controller.reached") + value(simulation, "rover/controller.failed") >= goals)
+      break;
+  }
+  return gap;
+}
+
+TEST(Clutter, ReachesItsGoalsWithoutContact) {
+  const auto simulation = clutter(1);
+  EXPECT_GT(drive(*simulation, 1, 6000), 0);
+  EXPECT_EQ(value(*simulation, "rover/controller.reached"), 1);
+  const Vec3 p = simulation->engine().pose(*simulation->find_instance("rover")).p;
+  EXPECT_LE(math::hypot(p.x - 4.3, p.y - 4.3), 0.15 + 0.6 * 0.05) << "the tolerance, and a control step";
+}
+
+TEST(SlowClutter, ReachesItsGoalsWithoutContactOnFiveSeeds) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto simulation = clutter(seed, {{"movers", seed % 2 ? "0" : "2"}});
+    const double gap = drive(*simulation, 4, 24'000);
+    std::printf("seed %d: gap %.3f m, %g s\n", static_cast<int>(seed), gap, simulation->now().s());
+    EXPECT_GT(gap, 0) << seed;
+    EXPECT_EQ(value(*simulation, "rover/controller.reached"), 4) << seed;
+  }
+}
+
+TEST(Clutter, GoesOnFromASnapshotToTheBit) {
+  const auto whole = clutter(2);
+  advance(*whole, 437);
+  const auto one = again(*whole), three = again(*whole, {.threads = 3});
+  advance(*whole, 300), advance(*one, 300), advance(*three, 300);
+  EXPECT_GT(value(*whole, "rover/controller.navigator.plans"), 2);
+  EXPECT_EQ(one->state_hash(), whole->state_hash());
+  EXPECT_EQ(three->state_hash(), whole->state_hash());
+}
+
+TEST(Clutter, AnswersGoalsOfClients) {
+  const auto simulation = clutter(1);
+  advance(*simulation, 10);
+  const std::string frame = topic_cast<msg::Path>(simulation->find_topic("/rover/controller/plan"))
+                                ->message.header.frame_id;
+  // Another frame: the goal of the list stays.
+  simulation->submit(goal(0, 0, "somewhere"));
+  advance(*simulation, 20);
+  EXPECT_EQ(value(*simulation, "rover/controller.refused"), 1);
+  EXPECT_EQ(value(*simulation, "rover/controller.navigator.goal_x"), 4.3);
+  // Off the map, 20 m about the start.
+  simulation->submit(goal(500, 0, frame));
+  advance(*simulation, 20);
+  EXPECT_EQ(status(*simulation).level, msg::DiagnosticStatus::error);
+  EXPECT_NE(status(*simulation).message.find("is off the map"), std::string::npos)
+      << status(*simulation).message;
+  EXPECT_EQ(value(*simulation, "rover/controller.failed"), 1);
+  EXPECT_TRUE(topic_cast<msg::Path>(simulation->find_topic("/rover/controller/plan"))->message.poses.empty());
+  // No number: refused at the border, nothing changes.
+  simulation->submit(goal(NAN, 0));
+  advance(*simulation, 20);
+  EXPECT_EQ(value(*simulation, "rover/controller.failed"), 1);
+  // A free one is driven to, and ends the list.
+  simulation->submit(goal(-4.3, -3.5));
+  EXPECT_GT(drive(*simulation, 2, 3000), 0);
+  EXPECT_EQ(value(*simulation, "rover/controller.reached"), 1);
+  advance(*simulation, 50);
+  EXPECT_EQ(status(*simulation).message, "reached");
+  // In the wall: it fails with the reason, after recoveries.
+  simulation->submit(goal(-5.05, -4.3));
+  EXPECT_GT(drive(*simulation, 3, 12'000), 0);
+  EXPECT_EQ(value(*simulation, "rover/controller.failed"), 2);
+  EXPECT_EQ(status(*simulation).level, msg::DiagnosticStatus::error);
+}
+
+TEST(Clutter, RefusesMapsThatAreNone) {
+  Diagnostics diagnostics;
+  const auto refusal = [&](const std::string& map) {
+    const std::vector<formats::Override> overrides{{"robots[0].controller.map_data", map}};
+    LoadOptions options;
+    options.overrides = overrides;
+    auto setup = load("scenarios/clutter.yaml", options, diagnostics);
+    if (!setup) return setup.error().text();
+    auto made = Simulation::create(std::move(*setup), {}, diagnostics);
+    return made ? std::string() : made.error().text();
+  };
+  EXPECT_EQ(refusal("\"200 200 0.05 -5 -5 0\\n40000*0\""), "");
+  EXPECT_NE(refusal("\"200 200 0.05 -5 -5 0\\n39999*0\""), "") << "too few cells";
+  EXPECT_NE(refusal("\"100000 100000 0.05 -5 -5 0\\n1*0\""), "") << "too large";
+  EXPECT_NE(refusal("\"200 200 nan -5 -5 0\\n40000*0\""), "");
+}
+
+/// A map with a wall in the place of the goal: answered at once, without a drive.
+TEST(Clutter, AnswersAGoalInAWallOfTheMap) {
+  const auto simulation = clutter(
+      1, {{"robots[0].controller.map_data", "\"200 200 0.05 -5 -5 0\\n20000*0 20000*100\""},
+          {"robots[0].controller.stop_on_failure", "true"}});
+  advance(*simulation, 40);
+  EXPECT_EQ(value(*simulation, "rover/controller.failed"), 1);
+  EXPECT_NE(status(*simulation).message.find("in an obstacle of the map"), std::string::npos)
+      << status(*simulation).message;
+}
+
+}  // namespace
+}  // namespace sandlot::test
