@@ -107,7 +107,7 @@ void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis,
 TEST(Navigator, ReachesGoalsInClutter) { navigator_clutter(0, 3, Chassis::differential, 1); }
 TEST(Navigator, AnOmniReachesGoalsInClutter) { navigator_clutter(1, 3, Chassis::omni, 1); }
 // A way that is longer: a gap that turns out too narrow for the margin when the robot is there, not for the reference.
-TEST(SlowNavigator, ReachesGoalsInAHundredRooms) { navigator_clutter(0, 100, Chassis::differential, 0.98); }
+TEST(SlowNavigator, ReachesGoalsInAHundredRooms) { navigator_clutter(0, 100, Chassis::differential, 0.97); }
 TEST(SlowNavigator, AnOmniReachesGoalsInRooms) { navigator_clutter(20, 50, Chassis::omni, 0.95); }
 
 /// Goals among discs that move: reached in 98 of 100 rooms, and driven into none of them in as many. A disc that comes out from
