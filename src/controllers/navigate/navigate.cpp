@@ -67,8 +67,9 @@ Status Navigate::init(const Description& robot, Outputs& out) {
 }
 
 bool Navigate::fits() const {
-  return navigator_ && state.navigator.layer.trust.size() == navigator_->area().cells() &&
-         state.next <= spec.goals.size();
+  const navigation::ObstacleLayerState& layer = state.navigator.layer;
+  return navigator_ && layer.trust.size() == navigator_->area().cells() &&
+         layer.free.size() == layer.trust.size() && state.next <= spec.goals.size();
 }
 
 navigation::NavigatorInput Navigate::input(const Observation& obs) {

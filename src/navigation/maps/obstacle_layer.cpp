@@ -70,6 +70,7 @@ void mark_scan(const ObstacleLayerSpec& spec, const GridGeometry& geometry, Obst
     trust = touched[i] == 2         ? obstacle_full
             : trust > obstacle_pass ? static_cast<std::uint8_t>(trust - obstacle_pass)
                                     : std::uint8_t{0};
+    state.free[i] = trust == 0 ? obstacle_full : std::uint8_t{0};
   }
 }
 
@@ -80,18 +81,22 @@ void decay(const ObstacleLayerSpec& spec, ObstacleLayerState& state, double dt_s
   const double steps = std::floor(state.rest_s / step_s);
   state.rest_s = std::max(0.0, state.rest_s - steps * step_s);
   const int lost = static_cast<int>(std::min(steps, 255.0));
-  for (std::uint8_t& trust : state.trust) trust = static_cast<std::uint8_t>(std::max(0, trust - lost));
+  for (auto* cells : {&state.trust, &state.free})
+    for (std::uint8_t& cell : *cells) cell = static_cast<std::uint8_t>(std::max(0, cell - lost));
 }
 
-void clear_near(const GridGeometry& geometry, ObstacleLayerState& state, Vec2 centre_M, double radius_m) {
+void clear_near(const GridGeometry& geometry, ObstacleLayerState& state, Vec2 centre_M, double radius_m,
+                double keep_m) {
   const GridFrame frame(geometry);
   const auto middle = frame.cell(centre_M);
   if (!middle) return;
   const int reach = static_cast<int>(std::min(radius_m / geometry.resolution_m, double{max_side}));
+  const double keep = keep_m / geometry.resolution_m;
   for (int y = std::max(0, middle->y - reach); y <= std::min(geometry.height - 1, middle->y + reach); ++y)
-    for (int x = std::max(0, middle->x - reach); x <= std::min(geometry.width - 1, middle->x + reach); ++x)
-      if ((x - middle->x) * (x - middle->x) + (y - middle->y) * (y - middle->y) <= reach * reach)
-        state.trust[geometry.index({x, y})] = 0;
+    for (int x = std::max(0, middle->x - reach); x <= std::min(geometry.width - 1, middle->x + reach); ++x) {
+      const int square = (x - middle->x) * (x - middle->x) + (y - middle->y) * (y - middle->y);
+      if (square <= reach * reach && square >= keep * keep) state.trust[geometry.index({x, y})] = 0;
+    }
 }
 
 }  // namespace sandlot::navigation

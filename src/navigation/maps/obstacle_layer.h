@@ -7,10 +7,13 @@
 ///
 /// A cell with any trust left is an obstacle. One scan changes a cell once, and a hit outweighs beams that pass.
 ///
+/// Cells that a beam passed, and no obstacle is trusted in, are known to be free, until `persistence` has gone by. What is neither
+/// is unknown: hidden, behind the robot, or out of range.
+///
 /// Frame    the map's.
 /// Errors   beams that are NaN, too near or negative, and poses that are not finite, change nothing.
 /// Limits   one plane; all beams of a scan are taken at one pose.
-/// Cost     a byte a cell; a scan about 3 ns for each cell along its beams; decay 0.1 ns a cell.
+/// Cost     two bytes a cell; a scan about 3 ns for each cell along its beams; decay 0.2 ns a cell.
 /// Source   marking and clearing as in Nav2's obstacle layer; trust that decays is ours.
 #include <span>
 #include <vector>
@@ -36,11 +39,20 @@ struct ObstacleLayerSpec {
 
 struct ObstacleLayerState {
   std::vector<std::uint8_t> trust;  ///< 255: seen just now, 0: no obstacle
+  std::vector<std::uint8_t> free;   ///< 255: seen or driven through just now, 0: not known to be free
   double rest_s = 0;                ///< time that has not lowered trust yet
+
+  void resize(std::size_t cells) {
+    trust.assign(cells, 0);
+    free.assign(cells, 0);
+  }
   static void fields(auto& s, auto&& visit) {
     visit(Field{"trust", "1", "Trust in the obstacle of each cell, 255 at most.", 0, 255, Field::none,
                 max_cells},
           s.trust);
+    visit(Field{"free", "1", "Trust that each cell is free, 255 at most; 0: not known.", 0, 255, Field::none,
+                max_cells},
+          s.free);
     visit(Field{"rest", "s", "Time that has not lowered the trust yet."}, s.rest_s);
   }
 };
@@ -61,7 +73,8 @@ void take_echoes(const msg::LaserScan& scan, const Pose& X_BL, const Pose2& X_MB
 void mark_scan(const ObstacleLayerSpec& spec, const GridGeometry& geometry, ObstacleLayerState& state,
                const msg::LaserScan& scan, const Pose& X_BL, const Pose2& X_MB, double robot_radius_m);
 void decay(const ObstacleLayerSpec& spec, ObstacleLayerState& state, double dt_s);
-/// Forgets obstacles within a distance of a point.
-void clear_near(const GridGeometry& geometry, ObstacleLayerState& state, Vec2 centre_M, double radius_m);
+/// Forgets obstacles within a distance of a point, but not those nearer than `keep_m`.
+void clear_near(const GridGeometry& geometry, ObstacleLayerState& state, Vec2 centre_M, double radius_m,
+                double keep_m = 0);
 
 }  // namespace sandlot::navigation

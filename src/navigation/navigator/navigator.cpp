@@ -18,6 +18,7 @@ constexpr std::array<EnumName<NavStatus>, 6> navigator_statuses{{{"idle", NavSta
                                                                  {"recovering", NavStatus::recovering},
                                                                  {"reached", NavStatus::reached},
                                                                  {"failed", NavStatus::failed}}};
+constexpr double navigator_gap_m = 0.3;  ///< distance within which places that are blocked are the same
 constexpr double navigator_blocked_replan_s = 0.3;  ///< least time between plans because of a blocked way
 
 constexpr double navigator_nearer_m = 0.5;  ///< way to the goal that counts as nearer
@@ -74,7 +75,7 @@ Result<Navigator> Navigator::make(const NavigatorSpec& spec, double period_s, st
   Navigator out(spec, footprint, grown);
   out.static_ = std::move(map);
   out.area_ = area;
-  out.state_.layer.trust.assign(area.cells(), 0);
+  out.state_.layer.resize(area.cells());
   const NavigatorLimits& l = spec.limits;
   const bool omni = spec.chassis == Chassis::omni;
   out.dwa_ = {.max_vx_mps = l.speed_mps,
@@ -132,6 +133,7 @@ Status Navigator::set_goal(const NavGoal& goal) {
   s.goal_x_m = goal.pose.x, s.goal_y_m = goal.pose.y;
   s.goal_theta_rad = goal.pose.theta, s.goal_heading = goal.heading;
   s.plan.clear();
+  s.blocked.clear();
   plan_.clear();
   s.dwa = {}, s.pursuit = {}, s.recovery = {};
   s.failing_s = s.time_s = s.since_plan_s = 0;
@@ -188,7 +190,8 @@ void Navigator::cancel() {
 }
 
 bool Navigator::restore(NavigatorState state) {
-  if (state.layer.trust.size() != area_.cells() || state.plan.size() > NavigatorState::max_poses)
+  if (state.layer.trust.size() != area_.cells() || state.layer.free.size() != area_.cells() ||
+      state.plan.size() > NavigatorState::max_poses)
     return false;
   state_ = std::move(state);
   if (!static_ && state_.placed) area_.origin = {state_.area_x_m, state_.area_y_m, 0};
@@ -274,18 +277,48 @@ Status Navigator::rebuild_local(const Pose2& X) {
   return {};
 }
 
+Result<std::vector<PathPose>> Navigator::grid_path(CostMap map, const Pose2& X) {
+  const Vec2 goal{state_.goal_x_m, state_.goal_y_m};
+  const auto closed = [](const BlockedPlace& b) { return b.times >= 2; };
+  std::optional<Result<GridPlan>> plan;
+  if (std::any_of(state_.blocked.begin(), state_.blocked.end(), closed)) {
+    const GridFrame frame(map.geometry);
+    std::vector<std::uint8_t> open = map.cost;
+    const int reach = static_cast<int>(std::ceil(0.5 * navigator_gap_m / area_.resolution_m));
+    for (const BlockedPlace& b : state_.blocked) {
+      const auto cell = frame.cell({b.x_m, b.y_m});
+      if (!cell || !closed(b)) continue;
+      for (int y = std::max(0, cell->y - reach); y <= std::min(area_.height - 1, cell->y + reach); ++y)
+        for (int x = std::max(0, cell->x - reach); x <= std::min(area_.width - 1, cell->x + reach); ++x) {
+          std::uint8_t& cost = map.cost[map.geometry.index({x, y})];
+          cost = std::max(cost, inscribed_cost);
+        }
+    }
+    plan = plan_grid(map, spec_.planner, {X.x, X.y}, goal);
+    // Without another way, gaps are tried again.
+    if (!*plan) {
+      map.cost = std::move(open);
+      state_.blocked.clear();
+      plan.reset();
+    }
+  }
+  if (!plan) plan = plan_grid(map, spec_.planner, {X.x, X.y}, goal);
+  if (!*plan) return plan->error();
+  std::vector<PathPose> path = path_through((*plan)->points, std::max(area_.resolution_m, 0.05));
+  if (path.empty()) path.push_back({{goal.x, goal.y, X.theta}});
+  return path;
+}
+
 Status Navigator::make_plan(const Pose2& X) {
   ++state_.plans;
   state_.since_plan_s = 0;
   state_.plan_wanted = false;
-  SL_ASSIGN(const CostMap map, make_cost_map(obstacles({0, 0}, area_.width, area_.height, false),
-                                             spec_.inflation, grown_.inscribed_m()));
+  SL_ASSIGN(CostMap map, make_cost_map(obstacles({0, 0}, area_.width, area_.height, false), spec_.inflation,
+                                       grown_.inscribed_m()));
   std::vector<PathPose> path;
   const Pose2 goal{state_.goal_x_m, state_.goal_y_m, state_.goal_theta_rad};
   if (navigator_by_dwa(spec_.chassis)) {
-    SL_ASSIGN(const GridPlan plan, plan_grid(map, spec_.planner, {X.x, X.y}, {goal.x, goal.y}));
-    path = path_through(plan.points, std::max(area_.resolution_m, 0.05));
-    if (path.empty()) path.push_back({{goal.x, goal.y, X.theta}});
+    SL_ASSIGN(path, grid_path(std::move(map), X));
   } else {
     // Without a heading of its own, the goal is faced as it is seen from here.
     Pose2 end = goal;
@@ -306,7 +339,7 @@ Status Navigator::make_plan(const Pose2& X) {
   return {};
 }
 
-bool Navigator::plan_free() const {
+std::optional<Pose2> Navigator::blocked_pose() const {
   const GridFrame frame(local_.geometry);
   const std::size_t at = navigator_by_dwa(spec_.chassis) ? state_.dwa.at : state_.pursuit.at;
   for (std::size_t i = at + 1; i < plan_.size(); ++i) {
@@ -316,9 +349,86 @@ bool Navigator::plan_free() const {
     const bool blocked = navigator_by_dwa(spec_.chassis)
                              ? local_.cost[local_.geometry.index(*cell)] >= inscribed_cost
                              : footprint_contact(local_, frame, footprint_, p) == Contact::obstacle;
-    if (blocked) return false;
+    if (blocked) return p;
   }
+  return {};
+}
+
+void Navigator::note_blocked(const Pose2& at) {
+  // What moves leaves again.
+  for (const MovingDisc& disc : discs_)
+    if (math::hypot(disc.centre_M.x - at.x, disc.centre_M.y - at.y) < disc.radius_m + navigator_gap_m) return;
+  for (BlockedPlace& b : state_.blocked)
+    if (math::hypot(b.x_m - at.x, b.y_m - at.y) <= navigator_gap_m) {
+      ++b.times;
+      return;
+    }
+  if (state_.blocked.size() < NavigatorState::max_blocked) state_.blocked.push_back({at.x, at.y, 1});
+}
+
+void Navigator::note_stuck() {
+  const std::size_t at = state_.dwa.at;
+  double along = 0;
+  for (std::size_t i = at + 1; i < plan_.size() && along < spec_.lookahead_m; ++i) {
+    if (footprint_contact(local_, GridFrame(local_.geometry), grown_, plan_[i].pose) != Contact::none)
+      return note_blocked(plan_[i].pose);
+    along += navigator_length(std::span(plan_).subspan(i - 1, 2));
+  }
+}
+
+Footprint Navigator::fitting_footprint(const Pose2& X) const {
+  const GridFrame frame(local_.geometry);
+  const auto fits = [&](const Footprint& f) {
+    return footprint_contact(local_, frame, f, X) == Contact::none;
+  };
+  if (fits(grown_)) return grown_;
+  if (fits(footprint_)) return footprint_;
+  Footprint out = footprint_;
+  for (double scale = 0.95; scale > 0.25 && !fits(out); scale -= 0.05) {
+    std::vector<Vec2> corners(footprint_.corners().begin(), footprint_.corners().end());
+    for (Vec2& c : corners) c = scale * c;
+    if (auto smaller = corners.empty() ? Footprint::circle(scale * footprint_.circumscribed_m())
+                                       : Footprint::polygon(std::move(corners)))
+      out = std::move(*smaller);
+  }
+  return out;
+}
+
+void Navigator::mark_driven(const Pose2& X) {
+  const GridFrame frame(area_);
+  const Vec2 g = frame.to_grid({X.x, X.y});
+  const double reach = footprint_.circumscribed_m() / area_.resolution_m + 1;
+  // Every cell that the footprint covers in part.
+  const double touching_m = area_.resolution_m * 0.7072;
+  for (int y = std::max(0, static_cast<int>(std::floor(g.y - reach)));
+       y <= std::min(area_.height - 1, static_cast<int>(g.y + reach)); ++y)
+    for (int x = std::max(0, static_cast<int>(std::floor(g.x - reach)));
+         x <= std::min(area_.width - 1, static_cast<int>(g.x + reach)); ++x)
+      if (footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= touching_m)
+        state_.layer.free[area_.index({x, y})] = 255;
+}
+
+bool Navigator::pose_known(const Pose2& X) const {
+  const GridFrame frame(area_);
+  const Vec2 g = frame.to_grid({X.x, X.y});
+  const double reach = footprint_.circumscribed_m() / area_.resolution_m;
+  if (!(g.x >= reach && g.y >= reach && g.x + reach < area_.width && g.y + reach < area_.height))
+    return false;
+  for (int y = static_cast<int>(g.y - reach); y <= static_cast<int>(g.y + reach); ++y)
+    for (int x = static_cast<int>(g.x - reach); x <= static_cast<int>(g.x + reach); ++x) {
+      const std::size_t i = area_.index({x, y});
+      // What is an obstacle is known, too: a contact, which others look for.
+      if (state_.layer.free[i] == 0 && state_.layer.trust[i] == 0 &&
+          footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= 0)
+        return false;
+    }
   return true;
+}
+
+bool Navigator::motion_known(const Pose2& X, const PlanarTwist& v) const {
+  const double speed = math::hypot(v.vx_mps, v.vy_mps);
+  const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 0.3);
+  return pose_known(driven(X, v, ahead_s / 2)) && pose_known(driven(X, v, ahead_s));
 }
 
 double Navigator::remaining(const Pose2& X) const {
@@ -328,14 +438,14 @@ double Navigator::remaining(const Pose2& X) const {
          math::hypot(plan_[at].pose.x - X.x, plan_[at].pose.y - X.y);
 }
 
-bool Navigator::command_safe(const Pose2& X, const PlanarTwist& v) const {
+bool Navigator::command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const {
   const GridFrame frame(local_.geometry);
   const double speed = math::hypot(v.vx_mps, v.vy_mps);
   const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 0.3);
   for (int k = 1; k <= 20; ++k) {
     const double t = ahead_s * k / 20;
     const Pose2 at = driven(X, v, t);
-    if (footprint_contact(local_, frame, footprint_, at) != Contact::none) return false;
+    if (footprint_contact(local_, frame, outline, at) != Contact::none) return false;
   }
   return !nears_disc(X, v);
 }
@@ -391,6 +501,7 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
       return finish({});
     }
   }
+  mark_driven(X);
   if (in.scan) observe(in, X);
   moving_discs(s.tracker, discs_);
   if (!active) return finish({});
@@ -406,10 +517,12 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   s.since_plan_s += in.dt_s;
   bool failing = false;
   if (s.recovery.stage == RecoveryStage::watching) {
-    const bool blocked = plan_.empty() || !plan_free();
+    const auto block = blocked_pose();
+    const bool blocked = plan_.empty() || block;
     const bool hybrid = !navigator_by_dwa(spec_.chassis);
     if (s.plan_wanted || (blocked && s.since_plan_s >= navigator_blocked_replan_s) ||
         (!hybrid && s.since_plan_s * spec_.plan_rate_hz >= 1)) {
+      if (block) note_blocked(*block);
       const std::uint32_t before = s.plans;
       const Status planned = make_plan(X);
       out.new_plan = planned && s.plans != before;
@@ -425,27 +538,32 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   }
 
   PlanarTwist command;
+  const Footprint outline = fitting_footprint(X);
   if (s.recovery.stage == RecoveryStage::watching && !plan_.empty()) {
     bool arrived = false;
     if (navigator_by_dwa(spec_.chassis)) {
       DwaSpec dwa = dwa_;
       if (!s.goal_heading) dwa.goal_tolerance_rad = math::pi;
-      // A robot within the margin of an obstacle leaves it by its own outline.
-      const bool tight = footprint_contact(local_, GridFrame(local_.geometry), grown_, X) != Contact::none;
-      const DwaStep step = choose_velocity(dwa, s.dwa, local_, tight ? footprint_ : grown_, plan_, X,
-                                           velocity, discs_);
+      DwaStep step = choose_velocity(dwa, s.dwa, local_, outline, plan_, X, velocity, discs_);
+      // Not blindly backwards or to the side: it turns there first.
+      if ((step.command.vx_mps < 0 || step.command.vy_mps != 0) && !motion_known(X, step.command)) {
+        dwa.min_vx_mps = dwa.max_vy_mps = 0;
+        step = choose_velocity(dwa, s.dwa, local_, outline, plan_, X, velocity, discs_);
+      }
       arrived = step.status == Driving::arrived;
       command = step.command;
       if (step.status == Driving::blocked) failing = true, s.reason = "no velocity is free of contacts";
       if (step.status == Driving::lost)
         failing = s.plan_wanted = true, s.reason = "the robot has left its plan";
     } else {
+      const bool touching = footprint_contact(local_, GridFrame(local_.geometry), footprint_, X) !=
+                            Contact::none;
       const PursuitStep step = pursue(pursuit_, s.pursuit, plan_, X, &local_, in.dt_s);
       arrived = step.status == Following::arrived;
       command = step.command;
       if (step.status == Following::missed || step.status == Following::lost)
         failing = s.plan_wanted = true, s.reason = "the robot has left its plan";
-      for (int k = 0; k < 3 && !command_safe(X, command); ++k) {
+      for (int k = 0; k < 3 && !command_safe(touching ? outline : footprint_, X, command); ++k) {
         command = {command.vx_mps / 2, command.vy_mps / 2, command.w_radps / 2};
         if (k < 2) continue;
         command = {};
@@ -468,14 +586,19 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   RecoverySpec recovery = spec_.recovery;
   if (!can_turn) recovery.turn_rad = 0;
   recovery.turn_radps = std::min(recovery.turn_radps, spec_.limits.turn_radps);
-  const bool tight = footprint_contact(local_, GridFrame(local_.geometry), grown_, X) != Contact::none;
-  const RecoveryStep step = recover(recovery, s.recovery, local_, tight ? footprint_ : grown_, X,
-                                    s.failing_s > spec_.patience_s, in.dt_s);
-  if (s.recovery.round > round) ++s.recoveries, ++s.vain, s.failing_s = 0;
+  const RecoveryStep step = recover(recovery, s.recovery, local_, outline, X, s.failing_s > spec_.patience_s,
+                                    in.dt_s, [this](const Pose2& there) { return pose_known(there); });
+  if (s.recovery.round > round) {
+    ++s.recoveries, ++s.vain, s.failing_s = 0;
+    note_stuck();
+  }
   // A robot that backs up and comes again moves on, but to no end.
   if (const double rest = remaining(X); !plan_.empty() && rest < s.nearest_m - navigator_nearer_m)
     s.nearest_m = rest, s.vain = 0;
-  if (step.clear_map) clear_near(area_, s.layer, {X.x, X.y}, spec_.window_m / 2);
+  // What is at arm's length may be out of sight, and the robot backs up next.
+  if (step.clear_map)
+    clear_near(area_, s.layer, {X.x, X.y}, spec_.window_m / 2,
+               grown_.circumscribed_m() + recovery.back_up_m + 2 * area_.resolution_m);
   if (step.plan_again) s.plan_wanted = true;
   if (step.stage == RecoveryStage::given_up || s.vain > 2 * static_cast<std::uint32_t>(recovery.rounds)) {
     (void)fail(Error{s.reason.empty() ? "the robot gets no further" : s.reason,

@@ -6,8 +6,10 @@
 ///   plan -> velocity: dynamic window (differential, omni), regulated pursuit with a check of contacts (car,
 ///           four_wheel_steer) -> recovery: clear, wait, back up, turn; then failed with the reason
 ///
-/// A new plan replaces a free old one only if it is a tenth shorter, so that the robot does not waver. Objects
-/// that move are taken out of the global map and avoided as discs with a velocity, too.
+/// A new plan replaces a free old one only if it is a tenth shorter, and a gap that was found blocked twice stays closed for this
+/// goal while there is another way, so that the robot does not waver. Objects that move are taken out of the global map and avoided
+/// as discs with a velocity, too. The robot backs up, and an omni one goes sideways, only over what its laser saw or what it drove
+/// over.
 ///
 /// Frame    M, that of the pose and of the map. Velocities in the robot's frame. Without a static map, a square of
 ///          `area` about the first pose.
@@ -16,11 +18,12 @@
 ///          the robot no nearer, and after `time_limit` at the latest.
 ///          Without a pose, or with one less certain than max_pose_std, the robot stands.
 /// Limits   obstacles in the plane of the laser. A goal outside the area is never reached: no rolling map.
-///          The first pose is taken as free. A car's local plan is its global one: it stops before obstacles and plans
+///          The first pose is taken as free. Plans of car and four_wheel_steer may lead backwards over the unknown, and gaps stay
+///          closed for the other two alone. A car's local plan is its global one: it stops before obstacles and plans
 ///          again. Latency of the drive is not modelled.
 /// Cost     a step: local map about 40 ns a cell of the window (0.4 ms at 5 m and 0.05 m), dynamic window 0.5 ms;
-///          a scan 0.1 ms; a plan some milliseconds, with the global map 40 ns a cell. Memory: two bytes a cell of
-///          the area, 20 during a plan; a plan has at most max_poses.
+///          a scan 0.1 ms; a plan some milliseconds, with the global map 40 ns a cell. Memory: three bytes a
+///          cell of the area, 20 during a plan; a plan has at most max_poses.
 /// Source   the structure and the names of feedback are those of Nav2 1.1 (NavigateToPose).
 #include <array>
 #include <optional>
@@ -132,8 +135,19 @@ struct PlanPose {
   }
 };
 
+/// Place at which a plan was found blocked on the way.
+struct BlockedPlace {
+  double x_m = 0, y_m = 0;
+  std::uint32_t times = 0;
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"x", "m", "Place, x."}, s.x_m);
+    visit(Field{"y", "m", "Place, y."}, s.y_m);
+    visit(Field{"times", "1", "Number of plans that were found blocked there."}, s.times);
+  }
+};
+
 struct NavigatorState {
-  static constexpr std::size_t max_poses = 20'000;
+  static constexpr std::size_t max_poses = 20'000, max_blocked = 100;
   NavStatus status = NavStatus::idle;
   std::string reason;  ///< of a failure or a recovery
   double goal_x_m = 0, goal_y_m = 0, goal_theta_rad = 0;
@@ -143,6 +157,7 @@ struct NavigatorState {
   ObstacleLayerState layer;
   TrackerState tracker;
   std::vector<PlanPose> plan;
+  std::vector<BlockedPlace> blocked;
   DwaState dwa;
   PursuitState pursuit;
   RecoveryState recovery;
@@ -166,6 +181,9 @@ struct NavigatorState {
     visit(Field{"layer", "", "Obstacles that the laser saw."}, s.layer);
     visit(Field{"tracker", "", "Objects that are tracked."}, s.tracker);
     visit(Field{"plan", "", "Global plan.", 0, 0, Field::none, max_poses}, s.plan);
+    visit(Field{"blocked", "", "Places where plans for this goal were found blocked.", 0, 0, Field::none,
+                max_blocked},
+          s.blocked);
     visit(Field{"dwa", "", "Progress of the dynamic window."}, s.dwa);
     visit(Field{"pursuit", "", "Progress of the pursuit."}, s.pursuit);
     visit(Field{"recovery", "", "Stage of the recovery."}, s.recovery);
@@ -239,9 +257,23 @@ class Navigator {
   GridMap obstacles(Cell corner, int width, int height, bool with_moving) const;
   Status rebuild_local(const Pose2& X);
   Status make_plan(const Pose2& X);
-  bool plan_free() const;
+  Result<std::vector<PathPose>> grid_path(CostMap map, const Pose2& X);
+  /// First pose ahead on the plan that is blocked; nothing if it is free.
+  std::optional<Pose2> blocked_pose() const;
+  bool plan_free() const { return !blocked_pose(); }
+  /// Remembers that a plan was blocked at a pose.
+  void note_blocked(const Pose2& at);
+  /// The same for a robot that gets no further, where its outline with the margin touches something on the plan.
+  void note_stuck();
+  /// Outline for checks of contacts: with the margin, without it within the margin of an obstacle, and smaller for a robot
+  /// that touches one, so that it can leave.
+  Footprint fitting_footprint(const Pose2& X) const;
+  void mark_driven(const Pose2& X);
+  /// Whether nothing that the robot covers at a pose is unknown.
+  bool pose_known(const Pose2& X) const;
+  bool motion_known(const Pose2& X, const PlanarTwist& v) const;
   double remaining(const Pose2& X) const;
-  bool command_safe(const Pose2& X, const PlanarTwist& v) const;
+  bool command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const;
   /// Whether a velocity soon brings the robot nearer to a moving disc than standing would, and too near.
   bool nears_disc(const Pose2& X, const PlanarTwist& v) const;
   void set_plan(std::vector<PathPose> path);

@@ -33,7 +33,8 @@ void recovery_progress(RecoveryState& state, const Pose2& X) {
 std::span<const EnumName<RecoveryStage>> enum_names(RecoveryStage) { return recovery_stages; }
 
 RecoveryStep recover(const RecoverySpec& spec, RecoveryState& state, const CostMap& map,
-                     const Footprint& footprint, const Pose2& X, bool failed, double dt_s) {
+                     const Footprint& footprint, const Pose2& X, bool failed, double dt_s,
+                     const std::function<bool(const Pose2&)>& known) {
   RecoveryStep out;
   const bool finite = is_finite(X);
   state.stage_s += dt_s;
@@ -67,8 +68,11 @@ RecoveryStep recover(const RecoverySpec& spec, RecoveryState& state, const CostM
   const GridFrame frame(map.geometry);
   const auto free = [&](const PlanarTwist& twist) {
     if (!finite) return false;
-    for (const double ahead : {dt_s, dt_s + 0.25, dt_s + 0.5})
-      if (footprint_contact(map, frame, footprint, driven(X, twist, ahead)) != Contact::none) return false;
+    for (const double ahead : {dt_s, dt_s + 0.25, dt_s + 0.5}) {
+      const Pose2 there = driven(X, twist, ahead);
+      if (footprint_contact(map, frame, footprint, there) != Contact::none || (known && !known(there)))
+        return false;
+    }
     return true;
   };
   if (state.stage == RecoveryStage::backing) {

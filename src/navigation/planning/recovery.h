@@ -6,7 +6,7 @@
 /// A round begins when the robot's planner or follower reports a failure, or when it has not come `progress_m`
 /// further for `stuck_time_s` though it has a goal. Every stage ends early when what it waits for is over: motions
 /// end where the footprint would touch something, and are left out by those that can't make them. Rounds are
-/// counted from the last progress.
+/// counted from the last progress. No motion leads to where the robot does not know that it is free.
 ///
 /// Frame    pose in the map's frame, commands in the robot's.
 /// Errors   none: a pose that is not finite stops the robot, and time goes on.
@@ -14,6 +14,7 @@
 /// Cost     a few footprint checks.
 /// Source   the order of Nav2's default behaviour tree (clear, spin, wait, back up), with the cheap ones first.
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "navigation/maps/footprint.h"
@@ -77,8 +78,10 @@ struct RecoveryStep {
 /// @param failed     the planner found no way, or the follower is blocked, lost or has missed the goal
 /// @param map        to look ahead in
 /// @param state      begins anew ({}) with each goal
+/// @param known      whether all that the robot covers at a pose is known to be free; none: the map knows all
 /// @pre   the spec's numbers lie in their ranges (check_ranges), dt_s > 0
 RecoveryStep recover(const RecoverySpec& spec, RecoveryState& state, const CostMap& map,
-                     const Footprint& footprint, const Pose2& X_MB, bool failed, double dt_s);
+                     const Footprint& footprint, const Pose2& X_MB, bool failed, double dt_s,
+                     const std::function<bool(const Pose2&)>& known = {});
 
 }  // namespace sandlot::navigation
