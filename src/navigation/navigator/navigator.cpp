@@ -18,21 +18,9 @@ constexpr std::array<EnumName<NavStatus>, 6> navigator_statuses{{{"idle", NavSta
                                                                  {"recovering", NavStatus::recovering},
                                                                  {"reached", NavStatus::reached},
                                                                  {"failed", NavStatus::failed}}};
-constexpr double navigator_gap_m = 0.3;  ///< distance within which places that are blocked are the same
 constexpr double navigator_blocked_replan_s = 0.3;  ///< least time between plans because of a blocked way
 
 constexpr double navigator_nearer_m = 0.5;  ///< way to the goal that counts as nearer
-
-bool navigator_by_dwa(Chassis chassis) {
-  return chassis == Chassis::differential || chassis == Chassis::omni;
-}
-
-double navigator_length(std::span<const PathPose> path) {
-  double length = 0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    length += math::hypot(path[i].pose.x - path[i - 1].pose.x, path[i].pose.y - path[i - 1].pose.y);
-  return length;
-}
 
 }  // namespace
 
@@ -200,16 +188,6 @@ bool Navigator::restore(NavigatorState state) {
   return true;
 }
 
-void Navigator::set_plan(std::vector<PathPose> path) {
-  if (path.size() > NavigatorState::max_poses) path.resize(NavigatorState::max_poses);
-  plan_ = std::move(path);
-  state_.plan.clear();
-  for (const PathPose& p : plan_)
-    state_.plan.push_back({p.pose.x, p.pose.y, p.pose.theta, p.direction_B.x, p.direction_B.y});
-  state_.dwa = {};
-  state_.pursuit = {.speed_mps = state_.pursuit.speed_mps};
-}
-
 void Navigator::place_area(const Pose2& X) {
   if (!static_) {
     area_.origin = {X.x - area_.width * area_.resolution_m / 2, X.y - area_.height * area_.resolution_m / 2,
@@ -277,195 +255,6 @@ Status Navigator::rebuild_local(const Pose2& X) {
   return {};
 }
 
-Result<std::vector<PathPose>> Navigator::grid_path(CostMap map, const Pose2& X) {
-  const Vec2 goal{state_.goal_x_m, state_.goal_y_m};
-  const auto closed = [](const BlockedPlace& b) { return b.times >= 2; };
-  std::optional<Result<GridPlan>> plan;
-  if (std::any_of(state_.blocked.begin(), state_.blocked.end(), closed)) {
-    const GridFrame frame(map.geometry);
-    std::vector<std::uint8_t> open = map.cost;
-    const int reach = static_cast<int>(std::ceil(0.5 * navigator_gap_m / area_.resolution_m));
-    for (const BlockedPlace& b : state_.blocked) {
-      const auto cell = frame.cell({b.x_m, b.y_m});
-      if (!cell || !closed(b)) continue;
-      for (int y = std::max(0, cell->y - reach); y <= std::min(area_.height - 1, cell->y + reach); ++y)
-        for (int x = std::max(0, cell->x - reach); x <= std::min(area_.width - 1, cell->x + reach); ++x) {
-          std::uint8_t& cost = map.cost[map.geometry.index({x, y})];
-          cost = std::max(cost, inscribed_cost);
-        }
-    }
-    plan = plan_grid(map, spec_.planner, {X.x, X.y}, goal);
-    // Without another way, gaps are tried again.
-    if (!*plan) {
-      map.cost = std::move(open);
-      state_.blocked.clear();
-      plan.reset();
-    }
-  }
-  if (!plan) plan = plan_grid(map, spec_.planner, {X.x, X.y}, goal);
-  if (!*plan) return plan->error();
-  std::vector<PathPose> path = path_through((*plan)->points, std::max(area_.resolution_m, 0.05));
-  if (path.empty()) path.push_back({{goal.x, goal.y, X.theta}});
-  return path;
-}
-
-Status Navigator::make_plan(const Pose2& X) {
-  ++state_.plans;
-  state_.since_plan_s = 0;
-  state_.plan_wanted = false;
-  SL_ASSIGN(CostMap map, make_cost_map(obstacles({0, 0}, area_.width, area_.height, false), spec_.inflation,
-                                       grown_.inscribed_m()));
-  std::vector<PathPose> path;
-  const Pose2 goal{state_.goal_x_m, state_.goal_y_m, state_.goal_theta_rad};
-  if (navigator_by_dwa(spec_.chassis)) {
-    SL_ASSIGN(path, grid_path(std::move(map), X));
-  } else {
-    // Without a heading of its own, the goal is faced as it is seen from here.
-    Pose2 end = goal;
-    if (!state_.goal_heading && math::hypot(goal.x - X.x, goal.y - X.y) > 1e-6)
-      end.theta = math::atan2(goal.y - X.y, goal.x - X.x);
-    const bool touching = footprint_contact(map, GridFrame(map.geometry), grown_, X) != Contact::none;
-    SL_ASSIGN(HybridPlan plan, plan_hybrid(map, touching ? footprint_ : grown_, hybrid_, X, end));
-    path = std::move(plan.poses);
-  }
-  if (state_.goal_heading && navigator_by_dwa(spec_.chassis)) {
-    PathPose last = path.back();
-    last.pose.theta = goal.theta;
-    path.push_back(last);
-  }
-  // A new way for a free old one only if it is clearly shorter.
-  if (!plan_.empty() && plan_free() && navigator_length(path) > 0.9 * remaining(X)) return {};
-  set_plan(std::move(path));
-  return {};
-}
-
-std::optional<Pose2> Navigator::blocked_pose() const {
-  const GridFrame frame(local_.geometry);
-  const std::size_t at = navigator_by_dwa(spec_.chassis) ? state_.dwa.at : state_.pursuit.at;
-  for (std::size_t i = at + 1; i < plan_.size(); ++i) {
-    const Pose2& p = plan_[i].pose;
-    const auto cell = frame.cell({p.x, p.y});
-    if (!cell) break;
-    const bool blocked = navigator_by_dwa(spec_.chassis)
-                             ? local_.cost[local_.geometry.index(*cell)] >= inscribed_cost
-                             : footprint_contact(local_, frame, footprint_, p) == Contact::obstacle;
-    if (blocked) return p;
-  }
-  return {};
-}
-
-void Navigator::note_blocked(const Pose2& at) {
-  // What moves leaves again.
-  for (const MovingDisc& disc : discs_)
-    if (math::hypot(disc.centre_M.x - at.x, disc.centre_M.y - at.y) < disc.radius_m + navigator_gap_m) return;
-  for (BlockedPlace& b : state_.blocked)
-    if (math::hypot(b.x_m - at.x, b.y_m - at.y) <= navigator_gap_m) {
-      ++b.times;
-      return;
-    }
-  if (state_.blocked.size() < NavigatorState::max_blocked) state_.blocked.push_back({at.x, at.y, 1});
-}
-
-void Navigator::note_stuck() {
-  const std::size_t at = state_.dwa.at;
-  double along = 0;
-  for (std::size_t i = at + 1; i < plan_.size() && along < spec_.lookahead_m; ++i) {
-    if (footprint_contact(local_, GridFrame(local_.geometry), grown_, plan_[i].pose) != Contact::none)
-      return note_blocked(plan_[i].pose);
-    along += navigator_length(std::span(plan_).subspan(i - 1, 2));
-  }
-}
-
-Footprint Navigator::fitting_footprint(const Pose2& X) const {
-  const GridFrame frame(local_.geometry);
-  const auto fits = [&](const Footprint& f) {
-    return footprint_contact(local_, frame, f, X) == Contact::none;
-  };
-  if (fits(grown_)) return grown_;
-  if (fits(footprint_)) return footprint_;
-  Footprint out = footprint_;
-  for (double scale = 0.95; scale > 0.25 && !fits(out); scale -= 0.05) {
-    std::vector<Vec2> corners(footprint_.corners().begin(), footprint_.corners().end());
-    for (Vec2& c : corners) c = scale * c;
-    if (auto smaller = corners.empty() ? Footprint::circle(scale * footprint_.circumscribed_m())
-                                       : Footprint::polygon(std::move(corners)))
-      out = std::move(*smaller);
-  }
-  return out;
-}
-
-void Navigator::mark_driven(const Pose2& X) {
-  const GridFrame frame(area_);
-  const Vec2 g = frame.to_grid({X.x, X.y});
-  const double reach = footprint_.circumscribed_m() / area_.resolution_m + 1;
-  // Every cell that the footprint covers in part.
-  const double touching_m = area_.resolution_m * 0.7072;
-  for (int y = std::max(0, static_cast<int>(std::floor(g.y - reach)));
-       y <= std::min(area_.height - 1, static_cast<int>(g.y + reach)); ++y)
-    for (int x = std::max(0, static_cast<int>(std::floor(g.x - reach)));
-         x <= std::min(area_.width - 1, static_cast<int>(g.x + reach)); ++x)
-      if (footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= touching_m)
-        state_.layer.free[area_.index({x, y})] = 255;
-}
-
-bool Navigator::pose_known(const Pose2& X) const {
-  const GridFrame frame(area_);
-  const Vec2 g = frame.to_grid({X.x, X.y});
-  const double reach = footprint_.circumscribed_m() / area_.resolution_m;
-  if (!(g.x >= reach && g.y >= reach && g.x + reach < area_.width && g.y + reach < area_.height))
-    return false;
-  for (int y = static_cast<int>(g.y - reach); y <= static_cast<int>(g.y + reach); ++y)
-    for (int x = static_cast<int>(g.x - reach); x <= static_cast<int>(g.x + reach); ++x) {
-      const std::size_t i = area_.index({x, y});
-      // What is an obstacle is known, too: a contact, which others look for.
-      if (state_.layer.free[i] == 0 && state_.layer.trust[i] == 0 &&
-          footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= 0)
-        return false;
-    }
-  return true;
-}
-
-bool Navigator::motion_known(const Pose2& X, const PlanarTwist& v) const {
-  const double speed = math::hypot(v.vx_mps, v.vy_mps);
-  const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 0.3);
-  return pose_known(driven(X, v, ahead_s / 2)) && pose_known(driven(X, v, ahead_s));
-}
-
-double Navigator::remaining(const Pose2& X) const {
-  const std::size_t at = navigator_by_dwa(spec_.chassis) ? state_.dwa.at : state_.pursuit.at;
-  if (plan_.empty() || at >= plan_.size()) return math::hypot(state_.goal_x_m - X.x, state_.goal_y_m - X.y);
-  return navigator_length(std::span(plan_).subspan(at)) +
-         math::hypot(plan_[at].pose.x - X.x, plan_[at].pose.y - X.y);
-}
-
-bool Navigator::command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const {
-  const GridFrame frame(local_.geometry);
-  const double speed = math::hypot(v.vx_mps, v.vy_mps);
-  const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 0.3);
-  for (int k = 1; k <= 20; ++k) {
-    const double t = ahead_s * k / 20;
-    const Pose2 at = driven(X, v, t);
-    if (footprint_contact(local_, frame, outline, at) != Contact::none) return false;
-  }
-  return !nears_disc(X, v);
-}
-
-bool Navigator::nears_disc(const Pose2& X, const PlanarTwist& v) const {
-  const double speed = math::hypot(v.vx_mps, v.vy_mps);
-  if (speed == 0) return false;
-  const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 1.0);
-  for (const MovingDisc& disc : discs_)
-    for (int k = 1; k <= 20; ++k) {
-      const double t = ahead_s * k / 20;
-      const Vec2 there = disc.centre_M + t * disc.velocity_M_mps;
-      const double then = footprint_distance(footprint_, driven(X, v, t), there);
-      // A robot that stands may have to let a disc come.
-      if (then < disc.radius_m + spec_.disc_clearance_m && then < footprint_distance(footprint_, X, there))
-        return true;
-    }
-  return false;
-}
-
 NavigatorStep Navigator::step(const NavigatorInput& in) {
   NavigatorStep out;
   NavigatorState& s = state_;
@@ -519,7 +308,7 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   if (s.recovery.stage == RecoveryStage::watching) {
     const auto block = blocked_pose();
     const bool blocked = plan_.empty() || block;
-    const bool hybrid = !navigator_by_dwa(spec_.chassis);
+    const bool hybrid = !by_dwa();
     if (s.plan_wanted || (blocked && s.since_plan_s >= navigator_blocked_replan_s) ||
         (!hybrid && s.since_plan_s * spec_.plan_rate_hz >= 1)) {
       if (block) note_blocked(*block);
@@ -541,7 +330,7 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   const Footprint outline = fitting_footprint(X);
   if (s.recovery.stage == RecoveryStage::watching && !plan_.empty()) {
     bool arrived = false;
-    if (navigator_by_dwa(spec_.chassis)) {
+    if (by_dwa()) {
       DwaSpec dwa = dwa_;
       if (!s.goal_heading) dwa.goal_tolerance_rad = math::pi;
       DwaStep step = choose_velocity(dwa, s.dwa, local_, outline, plan_, X, velocity, discs_);

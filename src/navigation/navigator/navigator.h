@@ -7,9 +7,8 @@
 ///           four_wheel_steer) -> recovery: clear, wait, back up, turn; then failed with the reason
 ///
 /// A new plan replaces a free old one only if it is a tenth shorter, and a gap that was found blocked twice stays closed for this
-/// goal while there is another way, so that the robot does not waver. Objects that move are taken out of the global map and avoided
-/// as discs with a velocity, too. The robot backs up, and an omni one goes sideways, only over what its laser saw or what it drove
-/// over.
+/// goal while there is another way: the robot does not waver. Objects that move are taken out of the global map and avoided as discs
+/// with a velocity, too. Backwards and sideways the robot drives only over what its laser saw, or what it drove over.
 ///
 /// Frame    M, that of the pose and of the map. Velocities in the robot's frame. Without a static map, a square of
 ///          `area` about the first pose.
@@ -21,9 +20,9 @@
 ///          The first pose is taken as free. Plans of car and four_wheel_steer may lead backwards over the unknown, and gaps stay
 ///          closed for the other two alone. A car's local plan is its global one: it stops before obstacles and plans
 ///          again. Latency of the drive is not modelled.
-/// Cost     a step: local map about 40 ns a cell of the window (0.4 ms at 5 m and 0.05 m), dynamic window 0.5 ms;
-///          a scan 0.1 ms; a plan some milliseconds, with the global map 40 ns a cell. Memory: three bytes a
-///          cell of the area, 20 during a plan; a plan has at most max_poses.
+/// Cost     a step: local map about 40 ns a cell of the window (0.4 ms at 5 m and 0.05 m), dynamic window 0.5 ms; a scan 0.1 ms; a
+///          plan some milliseconds, with the global map 40 ns a cell. Memory: three bytes a cell of the area, 20 during a plan;
+///          a plan has at most max_poses.
 /// Source   the structure and the names of feedback are those of Nav2 1.1 (NavigateToPose).
 #include <array>
 #include <optional>
@@ -251,6 +250,8 @@ class Navigator {
 
  private:
   Navigator(const NavigatorSpec& spec, const Footprint& footprint, const Footprint& grown);
+  /// Whether the dynamic window drives; else the pursuit.
+  bool by_dwa() const { return spec_.chassis <= Chassis::omni; }
   void place_area(const Pose2& X);
   void observe(const NavigatorInput& in, const Pose2& X);
   /// Obstacles of a part of the area.
@@ -265,8 +266,7 @@ class Navigator {
   void note_blocked(const Pose2& at);
   /// The same for a robot that gets no further, where its outline with the margin touches something on the plan.
   void note_stuck();
-  /// Outline for checks of contacts: with the margin, without it within the margin of an obstacle, and smaller for a robot
-  /// that touches one, so that it can leave.
+  /// Outline for checks of contacts: without the margin, or smaller, for a robot that is nearer already, so that it can leave.
   Footprint fitting_footprint(const Pose2& X) const;
   void mark_driven(const Pose2& X);
   /// Whether nothing that the robot covers at a pose is unknown.
