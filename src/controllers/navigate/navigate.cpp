@@ -75,27 +75,28 @@ bool Navigate::fits() const {
 navigation::NavigatorInput Navigate::input(const Observation& obs) {
   navigation::NavigatorInput in;
   in.dt_s = period_s_;
+  frame_.clear();
   const auto fresh_enough = [&](Time stamp) { return (obs.now() - stamp).s() <= spec.timeout_s; };
   if (odometry_) {
     const auto odometry = obs.get(*odometry_);
+    if (odometry.valid && !pose_) frame_ = odometry.message.header.frame_id;
     if (odometry.valid && fresh_enough(odometry.stamp)) {
       in.velocity = in_plane(odometry.message.twist.twist);
       if (!pose_) {
         in.X_MB = driven(in_plane(odometry.message.pose.pose), *in.velocity,
                          (obs.now() - odometry.stamp).s());
         in.pose_std_m = position_std(odometry.message.pose.covariance);
-        frame_ = odometry.message.header.frame_id;
       }
     }
   }
   if (pose_) {
     const auto pose = obs.get(*pose_);
+    if (pose.valid) frame_ = pose.message.header.frame_id;
     if (pose.valid && fresh_enough(pose.stamp)) {
       const navigation::NavigatorState& s = state.navigator;
       const PlanarTwist v = in.velocity.value_or(PlanarTwist{s.last_vx_mps, s.last_vy_mps, s.last_w_radps});
       in.X_MB = driven(in_plane(pose.message.pose.pose), v, (obs.now() - pose.stamp).s());
       in.pose_std_m = position_std(pose.message.pose.covariance);
-      frame_ = pose.message.header.frame_id;
     }
   }
   const auto scan = obs.get(laser_);
@@ -115,7 +116,7 @@ void Navigate::take_goals(const Observation& obs) {
   }
   if (const auto goal = obs.get(goal_pose_); goal.fresh) {
     const std::string& frame = goal.message.header.frame_id;
-    if (!frame.empty() && !frame_.empty() && frame != frame_) {
+    if (!frame.empty() && frame != frame_) {
       ++state.refused;
     } else {
       (void)navigator_->set_goal({in_plane(goal.message.pose), norm(goal.message.pose.q) > 0.5});
@@ -141,6 +142,7 @@ void Navigate::step(const Observation& obs, Command& cmd) {
     ++(step.status == NavStatus::reached ? state.reached : state.failed);
     state.driving = false;
     state.rest_s = spec.pause_s;
+    state.since_status_s = 1e6;  // published at once, also after another failure
     if (step.status == NavStatus::failed && spec.stop_on_failure) state.listed = false;
   }
   state.distance_remaining_m = step.feedback.distance_remaining_m;
@@ -149,11 +151,12 @@ void Navigate::step(const Observation& obs, Command& cmd) {
   twist.angular.z = step.command.w_radps;
   if (velocity_) cmd.publish(*velocity_, twist);
   else cmd.set(drive_, twist);
-  publish(obs, cmd, step);
+  publish(obs, cmd, step, in.X_MB.has_value());
   state.navigator = navigator_->take_state();
 }
 
-void Navigate::publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step) {
+void Navigate::publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step,
+                       bool placed) {
   path_out_.header.stamp = obs.now();
   path_out_.header.frame_id = frame_;
   const auto show = [&](Publication<msg::Path> topic, std::size_t count, auto&& pose) {
@@ -166,7 +169,8 @@ void Navigate::publish(const Observation& obs, Command& cmd, const navigation::N
   };
   // An empty path takes back the one before.
   const auto plan = over(step.status) ? std::span<const navigation::PathPose>() : navigator_->plan();
-  if (step.new_plan || plan.empty() == state.plan_shown) {
+  const bool first = placed && !state.begun;
+  if (step.new_plan || plan.empty() == state.plan_shown || first) {
     show(plan_, plan.size(), [&](std::size_t i) { return plan[i].pose; });
     const auto local = navigator_->local_plan();
     if (plan.empty()) show(local_plan_, local.size(), [&](std::size_t i) { return local[i]; });
@@ -177,7 +181,8 @@ void Navigate::publish(const Observation& obs, Command& cmd, const navigation::N
 
   state.since_costmap_s += period_s_;
   const navigation::CostMap& map = navigator_->local_map();
-  if (!over(step.status) && !map.cost.empty() && state.since_costmap_s * spec.costmap_rate_hz >= 1) {
+  const bool due = !over(step.status) && state.since_costmap_s * spec.costmap_rate_hz >= 1;
+  if (!map.cost.empty() && (due || (first && spec.costmap_rate_hz > 0))) {
     state.since_costmap_s = 0;
     costmap_out_.header = path_out_.header;
     costmap_out_.info.resolution = static_cast<float>(map.geometry.resolution_m);
@@ -188,6 +193,7 @@ void Navigate::publish(const Observation& obs, Command& cmd, const navigation::N
     std::transform(map.cost.begin(), map.cost.end(), costmap_out_.data.begin(), percent_of);
     cmd.publish(costmap_, costmap_out_);
   }
+  state.begun |= first;
   state.since_status_s += period_s_;
   if (step.status == state.shown && state.since_status_s * spec.status_rate_hz < 1) return;
   state.since_status_s = 0;

@@ -7,12 +7,12 @@
 /// Orders     a Twist for a drive. With `publish` it orders nothing and publishes the Twist on a topic of that name, for
 ///            another program, such as four_wheel_steer.
 /// Publishes  `plan` and `local_plan`, nav_msgs/Path; `costmap`, nav_msgs/OccupancyGrid of the window about the robot, at costmap_rate
-///            while there is a goal; `status`, diagnostic_msgs/DiagnosticStatus, at each change and at status_rate, with the feedback
+///            while there is a goal; both once as soon as the pose is known, so that readers know the frame; `status`, diagnostic_msgs/DiagnosticStatus, at each change and at status_rate, with the feedback
 ///            of Nav2's NavigateToPose among its values.
 /// Goals      those of `goals` in order; a goal_pose replaces the present goal and ends the list. Both are in the frame of the pose.
 ///            An orientation of zeros (or no yaw) means any heading.
 /// Errors     goals in a wall, off the map, without a way: `status` has the level ERROR and the reason; the list goes on, or ends with
-///            stop_on_failure. A goal_pose of another frame is refused: counted, the present goal stays. Pose or scan older than
+///            stop_on_failure. A goal_pose of another frame, or with one before there is a pose, is refused: counted, the present goal stays. Pose or scan older than
 ///            `timeout`, or a pose less certain than max_pose_std: the robot stands.
 /// Method, limits, cost   navigation/navigator/navigator.h. No ground truth is read but where `odometry` names it, no random numbers.
 /// Limits     of several scans in a control step the newest alone. Between the odometry's time and now the robot is taken to keep its
@@ -86,6 +86,7 @@ struct State {
   double rest_s = 0;       ///< of the pause
   double since_costmap_s = 1e6, since_status_s = 1e6;
   navigation::NavStatus shown = navigation::NavStatus::idle;
+  bool begun = false;       ///< whether a plan and a cost map were published, be they empty
   bool plan_shown = false;  ///< whether the newest plan published has poses
   std::uint32_t reached = 0, failed = 0, refused = 0;
   double distance_remaining_m = 0;
@@ -99,6 +100,7 @@ struct State {
     visit(Field{"since_costmap", "s", "Time since the last cost map."}, s.since_costmap_s);
     visit(Field{"since_status", "s", "Time since the last status."}, s.since_status_s);
     visit(Field{"shown", "", "Status published last."}, s.shown);
+    visit(Field{"begun", "", "Whether a plan and a cost map were published."}, s.begun);
     visit(Field{"plan_shown", "", "Whether the plan published last has poses."}, s.plan_shown);
     visit(Field{"reached", "1", "Number of goals that were reached."}, s.reached);
     visit(Field{"failed", "1", "Number of goals that failed."}, s.failed);
@@ -121,7 +123,7 @@ struct Navigate {
   void take_goals(const Observation& obs);
   /// Pose and velocity as they are now; no pose if it is too old.
   navigation::NavigatorInput input(const Observation& obs);
-  void publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step);
+  void publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step, bool placed);
   void publish_status(Command& cmd, const navigation::NavigatorStep& step);
 
   std::optional<navigation::Navigator> navigator_;  ///< its state is in `state` between steps
@@ -138,7 +140,7 @@ struct Navigate {
   Publication<msg::OccupancyGrid> costmap_;
   Publication<msg::DiagnosticStatus> status_;
   // Of one step: members for the memory of their texts and lists.
-  std::string frame_;
+  std::string frame_;  ///< of the newest pose; empty: there is none yet
   msg::Path path_out_;
   msg::OccupancyGrid costmap_out_;
   msg::DiagnosticStatus status_out_;

@@ -293,8 +293,10 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   mark_driven(X);
   if (in.scan) observe(in, X);
   moving_discs(s.tracker, discs_);
-  if (!active) return finish({});
-
+  if (!active) {
+    if (local_.cost.empty()) (void)rebuild_local(X);
+    return finish({});
+  }
   if (Status local = rebuild_local(X); !local) {
     (void)fail(local.error());
     return finish({});

@@ -71,9 +71,12 @@ NavigatorSpec navigator_spec(Chassis chassis = Chassis::differential) {
   return spec;
 }
 
-/// Goals in clutter that the robot does not know beforehand: reached without contact in 98 of 100 rooms, on ways that are no
-/// longer than 1.2 times the optimum in `short_share` of them, and 10 % longer on average at most.
-void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis, double short_share) {
+enum class Knowledge { unknown, mapped };
+
+/// Goals in clutter: reached without contact in 98 of 100 rooms. With the room's map, each way is at most 1.2 times as long as the
+/// optimum. A robot that does not know the room goes into gaps that turn out to be too narrow when it is there: its ways are as short
+/// in 95 of 100 rooms, and 10 % longer than the optimum on average at most.
+void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis, Knowledge knowledge) {
   int reached = 0, rooms = 0, short_ways = 0;
   double worst = 0, sum = 0;
   for (std::uint64_t seed = first; seed < last; ++seed) {
@@ -81,7 +84,9 @@ void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis,
     const double best = test::shortest(room.polygons, 0.2 + 0.1, room.start, room.goal, room.half);
     if (!std::isfinite(best)) continue;
     ++rooms;
-    Navigator nav = *Navigator::make(navigator_spec(chassis), 0.1, {});
+    std::optional<GridMap> map;
+    if (knowledge == Knowledge::mapped) map = room.map(0.05);
+    Navigator nav = *Navigator::make(navigator_spec(chassis), 0.1, std::move(map));
     const NavigatorRun run = navigator_drive(nav, room, {}, {{room.goal.x, room.goal.y, 0}, false}, 0.2);
     const bool good = run.status == NavStatus::reached && run.clearance_m > 0;
     reached += good;
@@ -95,20 +100,52 @@ void navigator_clutter(std::uint64_t first, std::uint64_t last, Chassis chassis,
                   name_of(run.status), run.reason.c_str(), run.clearance_m, run.way_m, optimum, run.seconds,
                   run.recoveries);
   }
-  std::printf("%d of %d, mean ratio %.3f, worst %.3f, %d within 1.2\n", reached, rooms,
+  std::printf("%s %s: %d of %d, mean ratio %.3f, worst %.3f, %d within 1.2\n", name_of(chassis),
+              knowledge == Knowledge::mapped ? "mapped" : "unknown", reached, rooms,
               sum / std::max(reached, 1), worst, short_ways);
   EXPECT_GE(rooms, 0.9 * static_cast<double>(last - first));
   EXPECT_GE(reached, 0.98 * rooms);
-  EXPECT_GE(short_ways, short_share * rooms);
+  if (knowledge == Knowledge::mapped) { EXPECT_EQ(short_ways, reached); }
+  EXPECT_GE(short_ways, 0.95 * rooms);
   EXPECT_LE(sum, 1.1 * reached);
-  EXPECT_LE(worst, 1.35);
 }
 
-TEST(Navigator, ReachesGoalsInClutter) { navigator_clutter(0, 3, Chassis::differential, 1); }
-TEST(Navigator, AnOmniReachesGoalsInClutter) { navigator_clutter(1, 3, Chassis::omni, 1); }
-// A way that is longer: a gap that turns out too narrow for the margin when the robot is there, not for the reference.
-TEST(SlowNavigator, ReachesGoalsInAHundredRooms) { navigator_clutter(0, 100, Chassis::differential, 0.97); }
-TEST(SlowNavigator, AnOmniReachesGoalsInRooms) { navigator_clutter(20, 50, Chassis::omni, 0.95); }
+TEST(Navigator, ReachesGoalsInClutter) {
+  navigator_clutter(0, 3, Chassis::differential, Knowledge::unknown);
+  navigator_clutter(0, 2, Chassis::differential, Knowledge::mapped);
+}
+TEST(Navigator, AnOmniReachesGoalsInClutter) {
+  navigator_clutter(1, 3, Chassis::omni, Knowledge::unknown);
+  navigator_clutter(1, 3, Chassis::omni, Knowledge::mapped);
+}
+// Room 55 has a gap at the limit of the margin, before which the robot wavered.
+TEST(Navigator, KeepsToItsWayAtAGapAtTheLimit) {
+  navigator_clutter(55, 56, Chassis::differential, Knowledge::unknown);
+}
+TEST(SlowNavigator, ReachesGoalsInTwentyRooms) {
+  navigator_clutter(0, 20, Chassis::differential, Knowledge::unknown);
+}
+TEST(SlowNavigator, ReachesGoalsInTwentyRoomsThatItKnows) {
+  navigator_clutter(20, 40, Chassis::differential, Knowledge::mapped);
+}
+TEST(SlowNavigator, AnOmniReachesGoalsInTenRooms) {
+  navigator_clutter(20, 30, Chassis::omni, Knowledge::unknown);
+}
+TEST(SlowNavigator, AnOmniReachesGoalsInTenRoomsThatItKnows) {
+  navigator_clutter(30, 40, Chassis::omni, Knowledge::mapped);
+}
+TEST(LongNavigator, ReachesGoalsInAHundredRooms) {
+  navigator_clutter(0, 100, Chassis::differential, Knowledge::unknown);
+}
+TEST(LongNavigator, ReachesGoalsInAHundredRoomsThatItKnows) {
+  navigator_clutter(0, 100, Chassis::differential, Knowledge::mapped);
+}
+TEST(LongNavigator, AnOmniReachesGoalsInAHundredRooms) {
+  navigator_clutter(0, 100, Chassis::omni, Knowledge::unknown);
+}
+TEST(LongNavigator, AnOmniReachesGoalsInAHundredRoomsThatItKnows) {
+  navigator_clutter(0, 100, Chassis::omni, Knowledge::mapped);
+}
 
 /// Goals among discs that move: reached in 98 of 100 rooms, and driven into none of them in as many. A disc that comes out from
 /// behind an obstacle at arm's length may meet a robot that has not come to a stop yet.
@@ -133,8 +170,12 @@ void navigator_movers(std::uint64_t first, std::uint64_t last, Chassis chassis =
 
 TEST(Navigator, NeverDrivesIntoMovingDiscs) { navigator_movers(0, 5); }
 
-TEST(SlowNavigator, NeverDrivesIntoMovingDiscsInAHundredRooms) { navigator_movers(0, 100); }
-TEST(SlowNavigator, AnOmniNeverDrivesIntoMovingDiscs) { navigator_movers(0, 20, Chassis::omni); }
+TEST(SlowNavigator, NeverDrivesIntoMovingDiscsInTwentyRooms) { navigator_movers(0, 20); }
+TEST(SlowNavigator, AnOmniNeverDrivesIntoMovingDiscsInTenRooms) { navigator_movers(0, 10, Chassis::omni); }
+TEST(LongNavigator, NeverDrivesIntoMovingDiscsInAHundredRooms) { navigator_movers(0, 100); }
+TEST(LongNavigator, AnOmniNeverDrivesIntoMovingDiscsInAHundredRooms) {
+  navigator_movers(0, 100, Chassis::omni);
+}
 
 TEST(Navigator, ReachesAHeading) {
   Clutter room;
