@@ -14,8 +14,8 @@
 namespace sandlot::test {
 namespace {
 
-std::unique_ptr<Simulation> scenario(const std::string& file, std::uint64_t seed,
-                                     const std::vector<formats::Override>& overrides = {}) {
+std::unique_ptr<Simulation> navigate_scenario(const std::string& file, std::uint64_t seed,
+                                              const std::vector<formats::Override>& overrides = {}) {
   Diagnostics diagnostics;
   LoadOptions options;
   options.seed = seed;
@@ -27,7 +27,7 @@ std::unique_ptr<Simulation> scenario(const std::string& file, std::uint64_t seed
 
 std::unique_ptr<Simulation> clutter(std::uint64_t seed,
                                     const std::vector<formats::Override>& overrides = {}) {
-  return scenario("scenarios/clutter.yaml", seed, overrides);
+  return navigate_scenario("scenarios/clutter.yaml", seed, overrides);
 }
 
 double value(const Simulation& simulation, const std::string& name) {
@@ -108,7 +108,7 @@ bool drive_on(Simulation& simulation, const std::string& navigator, double goals
 
 TEST(SlowOfficeGoals, ReachesTheRoomsWithoutContact) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto simulation = scenario("scenarios/office_goals.yaml", seed);
+    const auto simulation = navigate_scenario("scenarios/office_goals.yaml", seed);
     EXPECT_FALSE(drive_on(*simulation, "rover/navigator", 5, 20'000)) << seed;
     const Vec3 p = simulation->engine().pose(*simulation->find_instance("rover")).p;
     // The tolerance of the goal, and what the localiser is off by.
@@ -117,11 +117,11 @@ TEST(SlowOfficeGoals, ReachesTheRoomsWithoutContact) {
 }
 // The rule that counts contacts does: a rover that takes itself for a point touches something.
 TEST(SlowOfficeGoals, NoticesContacts) {
-  const auto simulation = scenario(
+  const auto simulation = navigate_scenario(
       "scenarios/office_goals.yaml", 1,
       {{"robots[0].controllers[1].radius", "0.02"}, {"robots[0].controllers[1].margin", "0"}});
   double blows = 0;
-  for (int i = 0; i < 12'000 && blows == 0; i += 20) {
+  for (int i = 0; i < 12'000 && !(blows > 0); i += 20) {
     advance(*simulation, 20);
     blows = value(*simulation, "rules/touched.robots[0].blows");
   }
@@ -130,7 +130,7 @@ TEST(SlowOfficeGoals, NoticesContacts) {
 
 TEST(SlowVineyardRows, ReachesTheEndsOfRows) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto simulation = scenario("scenarios/vineyard_rows.yaml", seed);
+    const auto simulation = navigate_scenario("scenarios/vineyard_rows.yaml", seed);
     double nearest = 1e9;
     for (int i = 0; i < 18'000 && value(*simulation, "mario/navigator.reached") < 4; i += 20) {
       advance(*simulation, 20);
