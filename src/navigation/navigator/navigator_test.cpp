@@ -22,13 +22,18 @@ struct NavigatorRun {
 
 /// Drives through a room whose drive does exactly what it is told; the navigator sees scans and poses only.
 NavigatorRun navigator_drive(Navigator& nav, const Clutter& room, std::vector<Mover> movers,
-                             const NavGoal& goal, double radius, double most_s = 120) {
+                             const NavGoal& goal, double radius, double most_s = 120,
+                             double view_rad = math::tau) {
   NavigatorRun out;
   constexpr double dt = 0.1;
   Pose2 X{room.start.x, room.start.y, 0.6};
   EXPECT_TRUE(nav.set_goal(goal));
   for (; out.seconds < most_s; out.seconds += dt) {
-    const msg::LaserScan scan = test::scan(room, movers, X);
+    msg::LaserScan scan = test::scan(room, movers, X);
+    const std::size_t beams = scan.ranges.size();
+    for (std::size_t i = 0; i < beams; ++i)
+      if (std::abs(math::tau * static_cast<double>(i) / static_cast<double>(beams) - math::pi) > view_rad / 2)
+        scan.ranges[i] = std::numeric_limits<float>::quiet_NaN();
     const NavigatorStep step = nav.step({.X_MB = X, .scan = &scan, .dt_s = dt});
     out.status = step.status;
     out.recoveries = step.feedback.number_of_recoveries;
@@ -190,6 +195,33 @@ TEST(Navigator, ReachesAHeading) {
     EXPECT_LE(std::abs(math::wrap_angle(run.end.theta - 1.5)), chassis == Chassis::car ? 0.3 : 0.15 + 1e-9)
         << name_of(chassis);
   }
+}
+
+/// Its goal lies in an obstacle, so that it recovers; behind it, where its laser of 270 degrees does not see, something stands.
+TEST(Navigator, DoesNotBackUpIntoWhatItDoesNotSee) {
+  Clutter room;
+  room.start = {};
+  const auto [s, c] = math::sincos(0.6);
+  room.polygons = {test::regular({-0.5 * c, -0.5 * s}, 0.2, 12, 0), test::regular({2 * c, 2 * s}, 0.5, 8, 0)};
+  for (const Chassis chassis : {Chassis::differential, Chassis::omni, Chassis::four_wheel_steer}) {
+    Navigator nav = *Navigator::make(navigator_spec(chassis), 0.1, {});
+    const NavigatorRun run = navigator_drive(nav, room, {}, {{2 * c, 2 * s, 0}, false}, 0.2, 60,
+                                             1.5 * math::pi);
+    EXPECT_NE(run.status, NavStatus::reached) << name_of(chassis);
+    EXPECT_GE(run.recoveries, 1u) << name_of(chassis);
+    EXPECT_GT(run.clearance_m, 0) << name_of(chassis);
+  }
+}
+
+TEST(Navigator, LeavesWhatItTouches) {
+  Clutter room;
+  // A post that reaches 2 cm into its outline, at its side.
+  room.polygons = {test::regular({-2, 0.28}, 0.1, 12, 0)};
+  room.start = {-2, 0};
+  Navigator nav = *Navigator::make(navigator_spec(), 0.1, {});
+  const NavigatorRun run = navigator_drive(nav, room, {}, {{1, -1, 0}, false}, 0.2);
+  EXPECT_EQ(run.status, NavStatus::reached) << run.reason;
+  EXPECT_GE(run.clearance_m, -0.021) << "it goes no deeper";
 }
 
 TEST(Navigator, AnswersBadGoalsWithTheReason) {

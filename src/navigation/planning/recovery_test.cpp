@@ -66,6 +66,21 @@ TEST(Recovery, MotionsEndBeforeObstacles) {
   EXPECT_EQ(run.pose.theta, 0);
 }
 
+TEST(Recovery, MotionsDoNotLeadToTheUnknown) {
+  const CostMap map = recovery_room();
+  const Footprint box = *Footprint::circle(0.2);
+  // It has seen the half plane from 0.15 m behind it on: with 0.1 m/s and half a second to look ahead it backs up by 0.1 m or less.
+  const auto known = [](const Pose2& there) { return there.x > -0.15; };
+  RecoveryState state;
+  Pose2 pose;
+  for (int k = 0; k < 200; ++k) {
+    const RecoveryStep step = recover({}, state, map, box, pose, k < 1, 0.05, known);
+    pose = driven(pose, step.command, 0.05);
+  }
+  EXPECT_GT(pose.x, -0.11);
+  EXPECT_LT(pose.x, -0.08);
+}
+
 TEST(Recovery, FailuresStartARoundAtOnceAndProgressForgets) {
   const CostMap map = recovery_room();
   const Footprint box = *Footprint::circle(0.2);
