@@ -28,13 +28,12 @@ void Navigator::mark_driven(const Pose2& X) {
   const GridFrame frame(area_);
   const Vec2 g = frame.to_grid({X.x, X.y});
   const double reach = footprint_.circumscribed_m() / area_.resolution_m + 1;
-  // Every cell that the footprint covers in part.
-  const double touching_m = area_.resolution_m * 0.7072;
+  // Cells whose centres it covers, as in pose_known(): more of them, and a robot could creep into the unknown.
   for (int y = std::max(0, static_cast<int>(std::floor(g.y - reach)));
        y <= std::min(area_.height - 1, static_cast<int>(g.y + reach)); ++y)
     for (int x = std::max(0, static_cast<int>(std::floor(g.x - reach)));
          x <= std::min(area_.width - 1, static_cast<int>(g.x + reach)); ++x)
-      if (footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= touching_m)
+      if (footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= 0)
         state_.layer.free[area_.index({x, y})] = 255;
 }
 
