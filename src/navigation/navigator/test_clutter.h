@@ -145,14 +145,14 @@ struct Clutter {
     for (const Polygon& polygon : polygons) best = std::min(best, distance(polygon, p));
     return best;
   }
-  /// Map of the room with a cell's width around it: cells whose centres lie in an obstacle, or within half a cell of one.
+  /// Map of the room with a cell's width around it: every cell that an obstacle touches, as a laser finds them in time.
   GridMap map(double resolution_m) const {
     const int side = 2 * static_cast<int>(half / resolution_m) + 2;
     GridMap out{{side, side, resolution_m, {-resolution_m * side / 2, -resolution_m * side / 2, 0}}, {}};
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
         const Vec2 p = GridFrame(out.geometry).to_map({x + 0.5, y + 0.5});
-        out.occupancy.push_back(clearance(p) <= resolution_m / 2 ? 100 : 0);
+        out.occupancy.push_back(clearance(p) <= 0.7072 * resolution_m ? 100 : 0);
       }
     return out;
   }
