@@ -68,8 +68,8 @@ for (const compression of ["none", "lz4", "zstd"]) {
       assert.ok(scan.ranges.every((r) => r === Infinity || r === -Infinity || (r > 0 && r <= scan.range_max)));
       ++scans;
     }
-    assert.equal(scans, 100, "10 Hz for 10 s");
-    assert.equal(counts.get("/rover/drive/ideal"), 500, "50 Hz for 10 s");
+    assert.equal(scans, 101, "10 Hz for 10 s, and that of the beginning");
+    assert.equal(counts.get("/rover/drive/ideal"), 501, "50 Hz for 10 s, and that of the beginning");
     assert.equal(counts.get("/sandlot/hash"), 1001, "one per tick, and that of the beginning");
     const names = [];
     for await (const attachment of indexed.readAttachments({ validateCrcs: true })) names.push(attachment.name);
