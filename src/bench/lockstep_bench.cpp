@@ -5,7 +5,6 @@
 /// server of Asio's that does nothing else.
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
-#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -22,6 +21,7 @@
 #include "base/check.h"
 #include "base/test_folder.h"
 #include "bench/bench.h"
+#include "bench/one_processor.h"
 #include "console/console.h"
 #include "server/server.h"
 #include "sim/load/load.h"
@@ -199,28 +199,6 @@ double echo() {
   client.join();
   return used_s;
 }
-
-/// Holds this thread, and those that it starts, to one processor: to wake another one takes 25 us on some machines, on others 2, and
-/// the scheduler is free to choose.
-class OneProcessor {
- public:
-  OneProcessor() {
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(::sched_getcpu(), &one);
-    held_ = ::sched_getaffinity(0, sizeof before_, &before_) == 0 &&
-            ::sched_setaffinity(0, sizeof one, &one) == 0;
-  }
-  ~OneProcessor() {
-    if (held_) ::sched_setaffinity(0, sizeof before_, &before_);
-  }
-  OneProcessor(const OneProcessor&) = delete;
-  OneProcessor& operator=(const OneProcessor&) = delete;
-
- private:
-  cpu_set_t before_{};
-  bool held_ = false;
-};
 
 }  // namespace
 

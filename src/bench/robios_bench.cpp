@@ -21,6 +21,7 @@
 #include "base/check.h"
 #include "base/test_folder.h"
 #include "bench/bench.h"
+#include "bench/one_processor.h"
 #include "files/resources.h"
 #include "sim/load/load.h"
 #include "sim/world/simulation.h"
@@ -149,6 +150,7 @@ void add_four_robots(std::vector<Row>& rows) {
 std::vector<Row> robios() {
   std::vector<double> ours, reference;
   for (int i = 0; i < 4; ++i) {
+    const OneProcessor one;
     const double alone_s = one_run(false);
     ours.push_back(one_run(true) - alone_s);
     reference.push_back(exchange());
