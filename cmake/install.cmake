@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set_target_properties(sandlot sandlot_bench_command PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 install(TARGETS sandlot RUNTIME DESTINATION bin)
 install(TARGETS sandlot_bench_command RUNTIME DESTINATION bin OPTIONAL)  # `./dev bench` builds it
-add_dependencies(sandlot selforg_library navigation_library)  # what builds the command can install
+add_dependencies(sandlot selforg_library navigation_library robios6 robios7 robios_host)  # what builds the command can install
 install(TARGETS sandlot_library selforg_library navigation_library LIBRARY DESTINATION lib)
 set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
