@@ -4,11 +4,10 @@
 /// The first four bytes choose the spec; then come orders of one byte each with what they need.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "base/bytes.h"
 #include "base/check.h"
+#include "input.h"
 #include "navigation/estimation/ekf.h"
 
 namespace {
@@ -16,48 +15,7 @@ namespace {
 using namespace sandlot;
 namespace ekf = navigation::ekf;
 
-class Input {
- public:
-  Input(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return at_ >= size_; }
-  std::uint8_t byte() { return empty() ? std::uint8_t{0} : data_[at_++]; }
-  std::int64_t whole() {
-    std::int64_t out = 0;
-    for (int i = 0; i < 8; ++i)
-      out = static_cast<std::int64_t>(static_cast<std::uint64_t>(out) << 8 | byte());
-    return out;
-  }
-  /// Mostly numbers as they are measured; some that break things, and any bits.
-  double number() {
-    static constexpr double odd[] = {0.0,
-                                     -0.0,
-                                     1e-300,
-                                     1e9,
-                                     -1e9,
-                                     1e10,
-                                     1e300,
-                                     -1e300,
-                                     1.5707963267948966,
-                                     3.2,
-                                     std::numeric_limits<double>::infinity(),
-                                     -std::numeric_limits<double>::infinity(),
-                                     std::numeric_limits<double>::quiet_NaN(),
-                                     std::numeric_limits<double>::denorm_min()};
-    const std::uint8_t which = byte();
-    if (which < 14) return odd[which];
-    if (which < 16) {
-      const std::int64_t bits = whole();
-      double out = 0;
-      std::memcpy(&out, &bits, sizeof out);
-      return out;
-    }
-    return (which - 128) / 16.0;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_, at_ = 0;
-};
+using fuzz::Input;
 
 ekf::Spec spec_of(Input& in) {
   ekf::Spec spec;

@@ -2,11 +2,10 @@
 /// outcome, its particles and its estimate are finite and as many as the spec allows, and a state that passes fits() can be gone on with.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "base/bytes.h"
 #include "base/check.h"
+#include "input.h"
 #include "navigation/localisation/amcl.h"
 
 namespace {
@@ -15,35 +14,7 @@ using namespace sandlot;
 namespace nav = navigation;
 namespace amcl = navigation::amcl;
 
-class Input {
- public:
-  Input(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return at_ >= size_; }
-  std::uint8_t byte() { return empty() ? std::uint8_t{0} : data_[at_++]; }
-  std::int64_t whole() {
-    std::uint64_t out = 0;
-    for (int i = 0; i < 8; ++i) out = out << 8 | byte();
-    return static_cast<std::int64_t>(out);
-  }
-  double number() {
-    static constexpr double odd[] = {0.0,
-                                     -0.0,
-                                     1e-300,
-                                     1e6,
-                                     -1e9,
-                                     1e300,
-                                     3.2,
-                                     std::numeric_limits<double>::infinity(),
-                                     -std::numeric_limits<double>::infinity(),
-                                     std::numeric_limits<double>::quiet_NaN()};
-    const std::uint8_t which = byte();
-    return which < 10 ? odd[which] : (which - 128) / 32.0;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_, at_ = 0;
-};
+using fuzz::Input;
 
 /// Room of 2 m x 2 m with a pillar, whose wall is unknown at one place.
 const amcl::Model& model() {
