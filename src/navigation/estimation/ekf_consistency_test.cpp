@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <span>
 
 #include "base/math.h"
 #include "base/random.h"
@@ -36,6 +37,28 @@ double squared_error(const Estimate& estimate, const Vector& truth) {
     sum += white[i] * white[i];
   }
   return sum;
+}
+
+/// Sums over runs are within the bounds of chi-square.
+/// @param nees     at each time; `freedom` degrees of freedom
+/// @param numbers  how many each sensor has measured, the degrees of freedom of its NIS
+void expect_consistent(std::span<const double> nees, double freedom, std::span<const double> nis,
+                       std::span<const double> numbers) {
+  double mean = 0;
+  for (const double each : nees) {
+    EXPECT_GT(each, chi_square(freedom, -4.5));
+    EXPECT_LT(each, chi_square(freedom, 4.5));
+    mean += each / freedom / static_cast<double>(nees.size());
+  }
+  // The mean over time varies no more than one of its terms does.
+  EXPECT_NEAR(mean, 1, 4.5 * std::sqrt(2.0 / freedom));
+  testing::Test::RecordProperty("nees", std::to_string(mean));
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    EXPECT_GT(numbers[s], 7000);
+    EXPECT_GT(nis[s], 0.98 * chi_square(numbers[s], -4.5)) << s;
+    EXPECT_LT(nis[s], 1.02 * chi_square(numbers[s], 4.5)) << s;
+    testing::Test::RecordProperty("nis" + std::to_string(s), std::to_string(nis[s] / numbers[s]));
+  }
 }
 
 // The truth moves by the filter's model with its process noise; 50 runs of 10 s. Odometry at 10 Hz, imu at 50 Hz, gps at 5 Hz.
@@ -126,22 +149,7 @@ TEST(EkfConsistency, NeesAndNisOfFiftyRuns) {
       components[each.sensor] += static_cast<double>(each.components);
     }
   }
-  const double low = chi_square(runs * states, -4.5), high = chi_square(runs * states, 4.5);
-  double mean = 0;
-  for (const double each : nees) {
-    EXPECT_GT(each, low);
-    EXPECT_LT(each, high);
-    mean += each / (runs * states) / static_cast<double>(nees.size());
-  }
-  // The mean over time varies no more than one of its terms does.
-  EXPECT_NEAR(mean, 1, 4.5 * std::sqrt(2.0 / (runs * states)));
-  RecordProperty("nees", std::to_string(mean));
-  for (std::size_t s = 0; s < 3; ++s) {
-    EXPECT_GT(components[s], 7000);
-    EXPECT_GT(nis[s], 0.98 * chi_square(components[s], -4.5)) << s;
-    EXPECT_LT(nis[s], 1.02 * chi_square(components[s], 4.5)) << s;
-    RecordProperty("nis" + std::to_string(s), std::to_string(nis[s] / components[s]));
-  }
+  expect_consistent(nees, runs * states, nis, components);
 }
 
 // Wheels and eyes by differences, one with the other's rate, and a receiver on an arm 1.5 m up without a datum, whose first fix comes
@@ -277,21 +285,7 @@ TEST(EkfConsistency, DifferencesAndADatumOfFiftyRuns) {
       datum_error += off * off / state.core.extra.variance(slot, i);
     }
   }
-  const double low = chi_square(runs * states, -4.5), high = chi_square(runs * states, 4.5);
-  double mean = 0;
-  for (const double each : nees) {
-    EXPECT_GT(each, low);
-    EXPECT_LT(each, high);
-    mean += each / (runs * states) / static_cast<double>(nees.size());
-  }
-  EXPECT_NEAR(mean, 1, 4.5 * std::sqrt(2.0 / (runs * states)));
-  RecordProperty("nees", std::to_string(mean));
-  for (std::size_t s = 0; s < 4; ++s) {
-    EXPECT_GT(components[s], 7000);
-    EXPECT_GT(nis[s], 0.98 * chi_square(components[s], -4.5)) << s;
-    EXPECT_LT(nis[s], 1.02 * chi_square(components[s], 4.5)) << s;
-    RecordProperty("nis" + std::to_string(s), std::to_string(nis[s] / components[s]));
-  }
+  expect_consistent(nees, runs * states, nis, components);
   EXPECT_GT(datum_error, chi_square(runs * 3, -4.5));
   EXPECT_LT(datum_error, chi_square(runs * 3, 4.5));
   RecordProperty("datum", std::to_string(datum_error / (runs * 3)));
