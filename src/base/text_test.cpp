@@ -98,6 +98,35 @@ TEST(Units, EachUnitIsWorthWhatItIs) {
   EXPECT_EQ(quantity(" 7 ", "m"), 7);
 }
 
+/// Every name of the table, as a quantity that is a round number in SI.
+TEST(Units, NoNameIsWorthAnythingElse) {
+  const struct {
+    const char *text, *si;
+    double value;
+  } all[] = {
+      {"4 m", "m", 4},          {"2500 mm", "m", 2.5},      {"50 cm", "m", 0.5},        {"2 km", "m", 2000},
+      {"2e6 um", "m", 2},       {"100 in", "m", 2.54},      {"10 ft", "m", 3.048},      {"3 rad", "rad", 3},
+      {"500 mrad", "rad", 0.5}, {"180 deg", "rad", math::pi}, {"3 s", "s", 3},          {"250 ms", "s", 0.25},
+      {"5e5 us", "s", 0.5},     {"5e8 ns", "s", 0.5},       {"3 min", "s", 180},        {"2 h", "s", 7200},
+      {"3 kg", "kg", 3},        {"500 g", "kg", 0.5},       {"2 t", "kg", 2000},        {"3 Hz", "Hz", 3},
+      {"3 kHz", "Hz", 3000},    {"3 m/s", "m/s", 3},        {"50 cm/s", "m/s", 0.5},    {"500 mm/s", "m/s", 0.5},
+      {"72 km/h", "m/s", 20},   {"3 rad/s", "rad/s", 3},    {"180 deg/s", "rad/s", math::pi},
+      {"30 rpm", "rad/s", math::pi},                        {"3 m/s^2", "m/s^2", 3},    {"2 g0", "m/s^2", 19.6133},
+      {"3 rad/s^2", "rad/s^2", 3}, {"180 deg/s^2", "rad/s^2", math::pi},                {"3 N", "N", 3},
+      {"2 kN", "N", 2000},      {"3 Nm", "Nm", 3},          {"500 mNm", "Nm", 0.5},     {"3 W", "W", 3},
+      {"3 J", "J", 3},          {"2 kJ", "J", 2000},        {"2 Wh", "J", 7200},        {"3 V", "V", 3},
+      {"500 mV", "V", 0.5},     {"3 A", "A", 3},            {"500 mA", "A", 0.5},       {"3 ohm", "ohm", 3},
+      {"500 mohm", "ohm", 0.5}, {"50 %", "1", 0.5},         {"3 1", "1", 3},            {"3 C", "C", 3},
+      {"2 Ah", "C", 7200},      {"1000 mAh", "C", 3600},    {"500 mW", "W", 0.5},       {"2 kW", "W", 2000},
+      {"500 mJ", "J", 0.5},     {"5e5 uJ", "J", 0.5},       {"5e8 nJ", "J", 0.5},       {"3 Ns", "Ns", 3},
+      {"3 B", "B", 3},          {"3 kB", "B", 3000},        {"3 MB", "B", 3e6},         {"3 GB", "B", 3e9},
+      {"2 KiB", "B", 2048},     {"0.5 MiB", "B", 524288},   {"0.5 GiB", "B", 536870912}, {"3 bit/s", "bit/s", 3},
+      {"3 kbit/s", "bit/s", 3000}, {"3 Mbit/s", "bit/s", 3e6},
+  };
+  for (const auto& each : all)
+    EXPECT_NEAR(quantity(each.text, each.si), each.value, 1e-15 * each.value) << each.text;
+}
+
 TEST(Units, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(complaint("5 kg", "s"), "unit 'kg' does not fit; units that fit: s, ms, us, ns, min, h");
   EXPECT_EQ(complaint("5 m", "Nm/A"), "unit 'm' does not fit; write the bare number");

@@ -367,6 +367,22 @@ TEST(Picture, CircleOfConfusionIsThatOfAThinLens) {
   }
 }
 
+TEST(Picture, WhatIsSharpLiesInAPlane) {
+  Studio studio;
+  // A white half plane at 4 m, its edge 45 degrees to the left: 5.7 m from the lens.
+  studio.glow(Box{{0.001, 40, 80}}, {{4.0005, 24, 0}, {}});
+  PictureJob job;
+  job.lens = pinhole(200, 1, 2);
+  const double f = std::get<Pinhole>(job.lens->lens().model).fx;
+  job.exposure.samples = 256;
+  job.exposure.aperture_m = 1;
+  job.exposure.focus_m = 4;
+  const Edge edge(Shot(studio, job), 0);
+  EXPECT_NEAR(edge.place, 99.5 - f, 0.1);
+  // On a sphere of 4 m the edge would lie behind what is sharp by 1.2 m: (f / 9.7)^2 / 16 = 2.7 more.
+  EXPECT_NEAR(edge.variance, 1 / 12.0, 0.2);
+}
+
 TEST(Picture, RollingShutterShearsWhatMoves) {
   for (const bool camera_moves : {false, true}) {
     Studio studio;

@@ -96,6 +96,7 @@ Recorded eventful(const char* engine, std::uint64_t begin = 33) {
                       {{begin + 2, twist("driven/drive", 0.3), client},
                        {begin + 12, twist("driven/drive/ideal", 0.1), client},
                        {begin + 12, twist("nobody/drive", 1), client},
+                       {begin + 5, PullRequest{"rover2", "", {}, {1, -1, 0.3}, Time::from_s(0.1)}},
                        {begin + 20, SpawnRequest{guest}},
                        {begin + 30, PoseRequest{"rover1", {{-3, 3, 0}, {}}}},
                        {begin + 40, ParameterRequest{"guest/laser", "noise/white", Node::scalar("5 cm")}},

@@ -271,12 +271,16 @@ TEST(Cameras, WhatHidesAThingAndTheEdgeOfThePictureCount) {
   edge = 1;
   stage.sense();
   EXPECT_TRUE(stage.seen().empty());
-  // At the left edge of the picture (45 degrees): the outer column is beyond it.
+  // At each edge of the picture (80 x 60, 45 degrees to the sides, atan(30 / 40) up and down) the outer column or row of places is beyond it.
   edge = -100;
-  stage.engine->body[0].X_WB.q = quat_from_axis_angle({0, 0, 1}, -math::pi / 4 + 0.005);
-  stage.sense();
-  ASSERT_EQ(stage.seen().size(), 1u);
-  EXPECT_NEAR(stage.seen()[0].visible, 6.0 / 9, 1e-12);
+  const double side = math::pi / 4 - 0.005, up = math::atan2(30, 40) - 0.005;
+  for (const auto& [axis, angle] : {std::pair{Vec3{0, 0, 1}, -side}, std::pair{Vec3{0, 0, 1}, side},
+                                    std::pair{Vec3{0, 1, 0}, -up}, std::pair{Vec3{0, 1, 0}, up}}) {
+    stage.engine->body[0].X_WB.q = quat_from_axis_angle(axis, angle);
+    stage.sense();
+    ASSERT_EQ(stage.seen().size(), 1u);
+    EXPECT_NEAR(stage.seen()[0].visible, 6.0 / 9, 1e-12) << axis.z << ' ' << angle;
+  }
 }
 
 TEST(Cameras, DetectorErrorsHaveTheirStatistics) {

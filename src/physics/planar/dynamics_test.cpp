@@ -56,6 +56,28 @@ TEST(PlanarCollision, ADiscHitsARodOffItsCentre) {
   EXPECT_NEAR(w.state(r).V_WB.angular.z, -0.3 * j / inertia, 1e-12);
 }
 
+/// Two links in one body, 1 m apart, the tensor of the second turned about x: upright it has its y moment, and a product with it.
+TEST(PlanarCollision, LinksThatAreFixedTogetherTurnAsTheirMassesAndTurnedTensorsSay) {
+  World w;
+  auto m = solid(Cylinder{0.1, 0.2}, 2);
+  m->links.push_back(m->links[0]);
+  m->links[0].inertial = {.mass_kg = 2, .X_LCo = {{0, -0.1, 0}, {}}, .moments = {0.3, 0.4, 0.5}};
+  m->links[1].name = "other";
+  m->links[1].X_ML.p = {1, 0, 0};
+  m->links[1].inertial = {
+      .mass_kg = 3, .X_LCo = {{0, 0.1, 0.05}, quat_from_rpy(math::pi / 2, 0, 0)}, .moments = {0.1, 0.2, 0.25}};
+  model::Joint joint;
+  joint.type = model::JointType::fixed;
+  joint.child = 1;
+  m->joints.push_back(joint);
+  const InstanceId id = w.add(m, at(0, 0));
+  // About the common centre: reduced mass 2 * 3 / 5, distance^2 = 1 + 0.2^2.
+  const double inertia = 0.5 + 0.2 + 1.2 * 1.04;
+  kick(w, id, {}, 1, 5, inertia);
+  w.run(1);
+  EXPECT_NEAR(w.state(id).V_WB.angular.z, 1, 1e-12);
+}
+
 TEST(PlanarCollision, NewtonsCradlePassesItOnWhicheverEndIsHit) {
   for (const bool from_left : {true, false}) {
     World w;

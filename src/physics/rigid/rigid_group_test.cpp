@@ -44,6 +44,36 @@ TEST(RigidGroup, TwoHalvesMakeTheWhole) {
   EXPECT_NEAR(group.inertia_B.xy, 0, 1e-12);
 }
 
+/// C's axes turned by 90 degrees about x: z of the link is y of C, y of the link is -z of C.
+TEST(RigidGroup, ATurnedTensorIsThatOfTheLink) {
+  model::Model m;
+  m.links.push_back(link_of("one", Sphere{0.1}, 1));
+  m.links[0].X_ML = {{1, 2, 3}, quat_from_rpy(0, 0, 0.4)};  // the body has the link's axes, wherever that is
+  m.links[0].inertial = {.mass_kg = 2,
+                         .X_LCo = {{0.5, 0, 0}, quat_from_rpy(math::pi / 2, 0, 0)},
+                         .moments = {1, 2, 2.5},
+                         .products = {0.1, 0.2, 0.3}};
+  const auto expect_turned = [](const Symmetric3& i, double times, Vec3 steiner) {
+    EXPECT_NEAR(i.xx, times * 1 + steiner.x, 1e-14);
+    EXPECT_NEAR(i.yy, times * 2.5 + steiner.y, 1e-14);
+    EXPECT_NEAR(i.zz, times * 2 + steiner.z, 1e-14);
+    EXPECT_NEAR(i.xy, times * -0.2, 1e-14);
+    EXPECT_NEAR(i.xz, times * 0.1, 1e-14);
+    EXPECT_NEAR(i.yz, times * -0.3, 1e-14);
+  };
+  const auto alone = group_links(m);
+  ASSERT_TRUE(alone);
+  expect_turned(alone->groups[0].inertia_B, 1, {});
+  // A second one of the same axes, 2 m farther along x: 2 kg, twice 1 m from the middle.
+  m.links.push_back(m.links[0]);
+  m.links[1].name = "two";
+  m.links[1].X_ML.p = m.links[0].X_ML * Vec3{2, 0, 0};
+  m.joints.push_back(fixed(0, 1));
+  const auto both = group_links(m);
+  ASSERT_TRUE(both);
+  expect_turned(both->groups[0].inertia_B, 2, {0, 4, 4});
+}
+
 TEST(RigidGroup, ProductsOfInertiaTurnWithTheirFrame) {
   const Symmetric3 m{1, 2, 3, 0.1, 0.2, 0.3};
   const Quat q = quat_from_rpy(0.3, -0.5, 1.1);

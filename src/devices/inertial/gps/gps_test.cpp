@@ -88,6 +88,18 @@ TEST(Gps, ErrorsHaveTheirSizeAndTheirCorrelation) {
   EXPECT_NEAR(cross / n, 0, 6 * 5 * 0.032);
 }
 
+TEST(Gps, TheCovarianceCountsTheConstantThatWasDrawn) {
+  Node node = config({{"rate", "1"}});
+  node.set("horizontal", config({{"white", "1.5"}, {"mean_std", "2"}}));
+  node.set("vertical", config({{"white", "3"}, {"mean_std", "4"}}));
+  Bench bench(node, 1);
+  bench.since[0] = Time::from_s(1);
+  const msg::NavSatFix at = bench.fix();
+  EXPECT_EQ(at.position_covariance[0], 1.5 * 1.5 + 2 * 2);
+  EXPECT_EQ(at.position_covariance[4], 1.5 * 1.5 + 2 * 2);
+  EXPECT_EQ(at.position_covariance[8], 3 * 3 + 4 * 4);
+}
+
 TEST(Gps, NeedsAPlaceOnTheEarth) {
   Rig rig(kind, test::two_wheels());
   const Status status = rig.add("gps", config({}));

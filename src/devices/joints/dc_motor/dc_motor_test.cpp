@@ -246,6 +246,21 @@ TEST(DcMotor, ASwitchKeepsTheVoltage) {
   EXPECT_FALSE(bench.switch_level(3));
 }
 
+TEST(DcMotor, ASwitchToPositionTakesOverWhatItsDerivativeGainWillTakeAway) {
+  Node node = keys();
+  node.set("position", config({{"p", "10"}, {"i", "1"}, {"d", "0.5"}}));
+  Bench bench(node);
+  bench.order(6);
+  for (int i = 0; i < 100; ++i) bench.act();
+  const double effort_before = bench.joint().effort;
+  EXPECT_GT(bench.joint().velocity, 1);
+  ASSERT_TRUE(bench.switch_level(1u << position));
+  bench.act();
+  // The error is 0 and the voltage still 6 V: it does not fall by 0.5 V s/rad times the speed, which would
+  // cost 0.25 Nm/V * 0.5 V.
+  EXPECT_NEAR(bench.joint().effort, effort_before, 0.02);
+}
+
 TEST(DcMotor, RefusesWhatItCannotTurn) {
   Rig rig(kind, two_wheels());
   const Status slider = rig.add("m", config({{"joint", "lift"}}));
