@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "command.h"
 
@@ -79,6 +80,57 @@ TEST_F(Fit, NamesAParameterThatChangesNothing) {
                               parameter("robots[0].devices.left_motor.max_rate", "200:900") +
                               " --compare /cart/right_motor/velocity.voltage");
   EXPECT_NE(printed.out.find("max_rate changes nothing that is compared"), std::string::npos) << printed.out;
+}
+
+/// A real robot's log knows neither topics nor ticks: rows at 37 Hz, between the ticks, with the speed in degrees. The speed of a
+/// wheel on a ramp is curved between ticks by less than the tolerance.
+TEST_F(Fit, TakesATableOfARealRobot) {
+  const std::string speed = "cart.joints.left_wheel_joint.velocity";
+  const Printed run = sandlot("run " + scenario() + " --headless --duration 3s --set " + gain +
+                              "=0.7 --set " + integral + "=5 --log " + scratch.file("ticks.csv") +
+                              " --log-values " + speed);
+  ASSERT_EQ(run.exit_code, 0) << run.out;
+  std::ifstream ticks(scratch.file("ticks.csv"));
+  std::vector<std::pair<double, double>> samples;
+  std::string line, table = "# a comment\ntime [s],battery,left\n";
+  std::getline(ticks, line);
+  double time_s = 0, radps = 0;
+  char comma = 0;
+  while (ticks >> time_s >> comma >> radps) samples.emplace_back(time_s, radps);
+  ASSERT_GT(samples.size(), 290u);
+  for (double t = 0.005; t < 2.9; t += 1 / 37.0) {
+    std::size_t i = 1;
+    while (samples[i].first < t) ++i;
+    const double part = (t - samples[i - 1].first) / (samples[i].first - samples[i - 1].first);
+    const double value = samples[i - 1].second + part * (samples[i].second - samples[i - 1].second);
+    table += std::to_string(t) + ",," + std::to_string(value * 57.29577951308232) + "\n";
+  }
+  scratch.write("real.csv", table);
+  const auto with = [&](const std::string& arguments) {
+    return sandlot("fit " + scenario() + " --recording " + scratch.file("real.csv") +
+                   parameter(gain, "0.1:5:log") + parameter(integral, "0.5:20:log") + " " + arguments);
+  };
+  const Printed printed = with("--json --screening 8 --compare '" + speed + "*57.29577951308232=left'");
+  ASSERT_EQ(printed.exit_code, 0) << printed.out;
+  const auto json = nlohmann::json::parse(printed.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << printed.out;
+  EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 0.7, 0.007) << printed.out;
+  EXPECT_NEAR(json["parameters"][1]["value"].get<double>(), 5, 0.05) << printed.out;
+  EXPECT_EQ(json["compared"][0]["values"], 108) << printed.out;
+
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Printed wrong = with(arguments);
+    EXPECT_EQ(wrong.exit_code, 2) << arguments << "\n" << wrong.out;
+    EXPECT_NE(wrong.out.find(words), std::string::npos) << arguments << "\n" << wrong.out;
+  };
+  refused("", "with a table --compare says which value each column is");
+  refused("--compare left", "is not VALUE=COLUMN");
+  refused("--compare " + speed + "=letf", "'left'");
+  refused("--compare " + speed + "=left:0", "above 0");
+  refused("--compare " + speed + "=battery", "column 'battery' has no number in that time");
+  refused("--compare cart.joints.left_wheel_jiont.velocity=left", "left_wheel_joint");
+  scratch.write("real.csv", "time,left\n-0.1,3\n");
+  refused("--compare " + speed + "=left", "is not a number of seconds from 0 on");
 }
 
 TEST_F(Fit, SaysWhatIsWrong) {

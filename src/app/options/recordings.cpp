@@ -152,7 +152,10 @@ void add_fit(CommandLine& line) {
   CLI::App* const verb = line.app.add_subcommand("fit",
                                                  "Find the parameters with which a recorded run is met");
   verb->add_option("file", options.file, "The scenario that was recorded")->required();
-  verb->add_option("--recording", options.recording, "The recording, an MCAP file")->required();
+  verb->add_option("--recording", options.recording,
+                   "The recording, an MCAP file; or a table of a real robot's run, a CSV file with a column "
+                   "'time' in seconds")
+      ->required();
   verb->add_option("--parameter", options.parameters,
                    "Address, as for --set, and limits of a parameter: ADDRESS=LOW:HIGH, with :log on a "
                    "logarithmic scale; may be given several times")
@@ -161,7 +164,8 @@ void add_fit(CommandLine& line) {
   verb->add_option(
           "--compare", options.compare,
           "Number of a topic and its scale: TOPIC.FIELD[:SCALE]; may be given several times; left out: "
-          "speeds of motors and odometry")
+          "speeds of motors and odometry. With a table VALUE=COLUMN[:SCALE], such as "
+          "cart.joints.left_wheel_joint.velocity=speed")
       ->allow_extra_args(false);
   verb->add_option("--runs", options.runs, "Most runs")->check(CLI::Range(2, 100000))->capture_default_str();
   verb->add_option("--screening", options.screening, "Runs all over the limits before the search")

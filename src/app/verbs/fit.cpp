@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -15,9 +16,12 @@
 #include "base/json_text.h"
 #include "base/text.h"
 #include "base/values.h"
+#include "draw/plot.h"
+#include "files/text.h"
 #include "messages/dynamic.h"
 #include "record/playback.h"
 #include "record/recording.h"
+#include "sim/watch/values.h"
 #include "statistics/least_squares.h"
 
 namespace sandlot::app {
@@ -30,9 +34,9 @@ using statistics::LeastSquares;
 /// Correlation from which two parameters are called confounded.
 constexpr double confounded = 0.95;
 
-/// Number of a topic that is compared, with the recorded messages.
+/// Number of a topic that is compared, with the recorded messages; or an expression, with the column of a table.
 struct Compared {
-  std::string topic, path;
+  std::string topic, path;  ///< of a table: the expression and ""
   ValuePath steps;
   std::optional<double> given_scale;
   double scale = 1;
@@ -41,11 +45,12 @@ struct Compared {
 
 struct Problem {
   const FitOptions& options;
+  bool of_table = false;  ///< the recording is a table: the scenario's own programs drive
   std::vector<std::string> addresses;
   std::vector<FitParameter> parameters;
   std::vector<formats::Override> fixed;
   std::vector<record::RecordedTick> ticks;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< of the recording
   std::vector<Compared> compared;
 };
 
@@ -141,6 +146,27 @@ Status read_commands(Problem& problem) {
   return {};
 }
 
+/// Standard deviation of the recorded values; nothing when they are all alike.
+std::optional<double> deviation_of(const Compared& c) {
+  double mean = 0, squares = 0;
+  const auto n = static_cast<double>(c.recorded.size());
+  for (const auto& [stamp, value] : c.recorded) mean += value / n;
+  for (const auto& [stamp, value] : c.recorded) squares += (value - mean) * (value - mean) / n;
+  return squares > 1e-18 ? std::optional(std::sqrt(squares)) : std::nullopt;
+}
+
+/// Takes ":SCALE" from the end of a text of --compare.
+Status split_scale(std::string& text, std::optional<double>& scale) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {};
+  double number = 0;
+  if (!parse_number(text.substr(colon + 1), number) || number <= 0)
+    return Error{"--compare '" + text + "': the scale behind the colon must be a number above 0"};
+  scale = number;
+  text.resize(colon);
+  return {};
+}
+
 /// Reads what is compared, its recorded values and their scales.
 Status read_compared(Problem& problem) {
   const std::string& file = problem.options.recording;
@@ -160,13 +186,7 @@ Status read_compared(Problem& problem) {
   if (wanted.empty()) return of_file(file, "no motor and no odometry was recorded", "name what to --compare");
   for (std::string& text : wanted) {
     Compared c;
-    if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
-      double scale = 0;
-      if (!parse_number(text.substr(colon + 1), scale) || scale <= 0)
-        return Error{"--compare '" + text + "': the scale behind the colon must be a number above 0"};
-      c.given_scale = scale;
-      text.resize(colon);
-    }
+    SL_TRY(split_scale(text, c.given_scale));
     auto split = wanted_topics(std::span(&text, 1), topics);
     if (!split) return of_file(file, split.error().what, split.error().fix);
     c.topic = split->front().topic;
@@ -196,21 +216,117 @@ Status read_compared(Problem& problem) {
     if (c.recorded.empty())
       return of_file(file, "'" + c.topic + "' has no number '" + c.path + "' in that time",
                      suggestion(c.path, known));
-    double mean = 0, squares = 0;
-    const auto n = static_cast<double>(c.recorded.size());
-    for (const auto& [stamp, value] : c.recorded) mean += value / n;
-    for (const auto& [stamp, value] : c.recorded) squares += (value - mean) * (value - mean) / n;
-    const bool varies = squares > 1e-18;
-    if (problem.options.compare.empty() && !varies) continue;
-    c.scale = c.given_scale.value_or(varies ? std::sqrt(squares) : 1);
+    const auto deviation = deviation_of(c);
+    if (problem.options.compare.empty() && !deviation) continue;
+    c.scale = c.given_scale.value_or(deviation.value_or(1));
     problem.compared.push_back(std::move(c));
   }
   if (problem.compared.empty()) return of_file(file, "nothing that was recorded varies in that time");
   return {};
 }
 
+/// Reads the columns of a table, the run of a real robot, that are compared with values of the simulation.
+Status read_table(Problem& problem) {
+  const FitOptions& options = problem.options;
+  constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+  SL_ASSIGN(const std::string text, read_text_file(options.recording, most_bytes));
+  SL_ASSIGN(const draw::Table table, draw::read_csv(text, options.recording));
+  const auto column = [&](const std::string& name) -> Result<const std::vector<double>*> {
+    const auto found = std::find(table.names.begin(), table.names.end(), name);
+    if (found == table.names.end())
+      return of_file(options.recording, "the table has no column '" + name.substr(0, 60) + "'",
+                     suggestion(name, table.names));
+    return &table.columns[static_cast<std::size_t>(found - table.names.begin())];
+  };
+  SL_ASSIGN(const std::vector<double>* const times, column("time"));
+  for (const double t : *times)
+    if (!(t >= 0 && t < 1e6))
+      return of_file(options.recording, "a time of the table is not a number of seconds from 0 on",
+                     "the first tick of the scenario is at 0 s");
+  if (options.compare.empty())
+    return Error{"with a table --compare says which value each column is",
+                 "--compare cart.joints.left_wheel_joint.velocity=speed"};
+  for (std::string each : options.compare) {
+    const std::size_t equals = each.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+      return Error{"--compare '" + each + "' is not VALUE=COLUMN or VALUE=COLUMN:SCALE"};
+    Compared c;
+    c.topic = each.substr(0, equals);
+    std::string name = each.substr(equals + 1);
+    if (std::find(table.names.begin(), table.names.end(), name) == table.names.end())
+      SL_TRY(split_scale(name, c.given_scale));
+    SL_ASSIGN(const std::vector<double>* const values, column(name));
+    for (std::size_t row = 0; row < values->size(); ++row) {
+      const double t = (*times)[row], value = (*values)[row];
+      if (std::isfinite(value) && t >= options.from_s.value_or(0) && t <= options.to_s.value_or(1e6))
+        c.recorded.emplace_back(Time::from_s(t).ns, value);
+    }
+    if (c.recorded.empty())
+      return of_file(options.recording, "column '" + name + "' has no number in that time");
+    std::stable_sort(c.recorded.begin(), c.recorded.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    c.scale = c.given_scale.value_or(deviation_of(c).value_or(1));
+    problem.compared.push_back(std::move(c));
+  }
+  return {};
+}
+
+/// Residuals of a run that the scenario's own programs drive. Between two ticks values are taken to be linear.
+Result<std::vector<double>> trial_beside_table(const Problem& problem,
+                                               const std::vector<double>& parameters) {
+  Diagnostics diagnostics;
+  SL_ASSIGN(model::Setup setup, load_fit(problem, parameters, diagnostics));
+  setup.stop.reset();
+  SL_ASSIGN(const auto simulation,
+            Simulation::create(std::move(setup), {.paths = problem.options.paths}, diagnostics));
+  struct Follower {
+    ValueExpression value;
+    const Compared* compared;
+    std::size_t next = 0;
+    std::optional<double> before = std::nullopt;
+    std::vector<double> residuals = {};
+  };
+  std::vector<Follower> followers;
+  std::int64_t end_ns = 0;
+  for (const Compared& c : problem.compared) {
+    SL_ASSIGN(ValueExpression value, ValueExpression::compile(*simulation, c.topic));
+    followers.push_back({std::move(value), &c});
+    end_ns = std::max(end_ns, c.recorded.back().first);
+  }
+  Time before;
+  while (true) {
+    const Time now = simulation->now();
+    for (Follower& each : followers) {
+      const auto evaluated = each.value.evaluate();
+      const bool there = evaluated && std::isfinite(evaluated->value);
+      const auto& recorded = each.compared->recorded;
+      for (; each.next < recorded.size() && recorded[each.next].first <= now.ns; ++each.next) {
+        const auto& [stamp, wanted] = recorded[each.next];
+        if (!there || (stamp < now.ns && !each.before))
+          return Error{
+              "'" + each.compared->topic + "' has no value at " + number_text(Time{stamp}.s()) + " s",
+              "compare from a later time: --from"};
+        const double part = stamp == now.ns ? 1
+                                            : static_cast<double>(stamp - before.ns) /
+                                                  static_cast<double>(now.ns - before.ns);
+        const double from = part == 1 ? 0 : *each.before;
+        each.residuals.push_back((from + part * (evaluated->value - from) - wanted) / each.compared->scale);
+      }
+      each.before = there ? std::optional(evaluated->value) : std::nullopt;
+    }
+    if (now.ns >= end_ns) break;
+    before = now;
+    SL_TRY(simulation->tick());
+  }
+  std::vector<double> residuals;
+  for (const Follower& each : followers)
+    residuals.insert(residuals.end(), each.residuals.begin(), each.residuals.end());
+  return residuals;
+}
+
 /// Residuals of one run, or why it could not be carried out.
 Result<std::vector<double>> trial(const Problem& problem, const std::vector<double>& values) {
+  if (problem.of_table) return trial_beside_table(problem, values);
   Diagnostics diagnostics;
   SL_ASSIGN(model::Setup setup, load_fit(problem, values, diagnostics));
   setup.stop.reset();
@@ -303,11 +419,13 @@ Json fit_json(const Problem& problem, const LeastSquares& fitted) {
                                     problem.addresses[j], fitted.correlation[i][j]));
   }
   for (std::size_t i = 0; i < problem.compared.size(); ++i)
-    compared.push_back({{"field", problem.compared[i].topic + "." + problem.compared[i].path},
-                        {"scale", problem.compared[i].scale},
-                        {"values", problem.compared[i].recorded.size()},
-                        {"rms_before", rms(problem, fitted.first, i)},
-                        {"rms_after", rms(problem, fitted.last, i)}});
+    compared.push_back(
+        {{"field", problem.of_table ? problem.compared[i].topic
+                                    : problem.compared[i].topic + "." + problem.compared[i].path},
+         {"scale", problem.compared[i].scale},
+         {"values", problem.compared[i].recorded.size()},
+         {"rms_before", rms(problem, fitted.first, i)},
+         {"rms_after", rms(problem, fitted.last, i)}});
   if (!fitted.converged) notes.push_back("the search was ended before it converged; --runs allows more");
   json["parameters"] = parameters;
   json["correlation"] = fitted.correlation;
@@ -344,8 +462,13 @@ Result<LeastSquares> search(Problem& problem) {
   for (const formats::Override& each : problem.options.overrides)
     if (std::find(problem.addresses.begin(), problem.addresses.end(), each.path) == problem.addresses.end())
       problem.fixed.push_back(each);
-  SL_TRY(read_commands(problem));
-  SL_TRY(read_compared(problem));
+  problem.of_table = std::filesystem::path(problem.options.recording).extension() == ".csv";
+  if (problem.of_table) {
+    SL_TRY(read_table(problem));
+  } else {
+    SL_TRY(read_commands(problem));
+    SL_TRY(read_compared(problem));
+  }
   catch_interrupts();
   const auto evaluate = [&](const std::vector<std::vector<double>>& points) {
     return trials(problem, points);
