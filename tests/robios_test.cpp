@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "base/log.h"
 #include "base/program.h"
 #include "base/test_folder.h"
+#include "command.h"
 #include "programs/test_sandbox.h"
 #include "sim/test_input.h"
 #include "sim/test_world.h"
@@ -163,6 +166,45 @@ TEST_F(RobiosPrograms, ReadNoFilesOfOthersWhileTheyCompile) {
   const auto none = Simulation::create(with({"thief.c"}), {.start_programs = true}, diagnostics);
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().text(), HasSubstr("does not compile"));
+}
+
+/// VWControl has hundredths; 0 for Tw means no integral. A robot whose drive has no loops takes the call and keeps its wheels.
+TEST_F(RobiosPrograms, GainsOfTheLoopsAreThoseOfTheProgram) {
+  const auto program = [&](const char* name, const char* gains) {
+    folder.write(name, std::string("#include \"eyebot.h\"\nint main() { VWControl(") + gains +
+                           "); VWSetSpeed(200, 0); OSWait(1000); return 0; }\n");
+  };
+  program("strong.c", "250, 50, 400, 0");
+  program("weak.c", "5, 10000, 5, 10000");
+  const auto robot = [&](const char* name, const char* file, const char* model, const char* drive, double y) {
+    return std::string("  - name: ") + name + "\n    model: {builder: " + model + "}\n    pose: [0, " +
+           std::to_string(y) + ", 0]\n    devices: {drive: " + drive +
+           "}\n    controller: {kind: robios, program: " + file + "}\n";
+  };
+  folder.write(
+      "gains.yaml",
+      "version: 1\nname: gains\nphysics: planar\ntime: {step: 10 ms, substeps: 5, stop: 0.6 s}\nrobots:\n" +
+          robot("strong", "strong.c", "mecanum_robot", "{level: contact, control: {}}", 0) +
+          robot("weak", "weak.c", "mecanum_robot", "{level: contact, control: {}}", 2) +
+          robot("plain", "weak.c", "diff_robot", "{level: contact}", 4));
+  const std::string values =
+      "strong/drive.control.vv,strong/drive.control.tv,strong/drive.control.vw,strong/drive.control.tw,"
+      "strong.velocity.x,weak.velocity.x,plain.velocity.x,strong/controller.refused,plain/controller.refused";
+  const Printed run = sandlot("run " + folder.file("gains.yaml") + " --headless --log " +
+                              folder.file("log.csv") + " --log-values " + values);
+  ASSERT_EQ(run.exit_code, 0) << run.out;
+  std::ifstream log(folder.file("log.csv"));
+  std::string line, last;
+  while (std::getline(log, line)) last = line;
+  std::vector<double> numbers;
+  std::stringstream fields(last);
+  while (std::getline(fields, line, ',')) numbers.push_back(std::stod(line));
+  ASSERT_EQ(numbers.size(), 10u) << last;
+  EXPECT_EQ(std::vector(numbers.begin() + 1, numbers.begin() + 5), (std::vector{2.5, 0.5, 4.0, 1e6}));
+  EXPECT_GT(numbers[5], 0.15) << "strong gains";
+  EXPECT_LT(numbers[6], 0.1) << "gains of a fiftieth";
+  EXPECT_NEAR(numbers[7], 0.2, 0.005) << "wheels that keep their speed";
+  EXPECT_EQ(numbers[8] + numbers[9], 0);
 }
 
 TEST_F(RobiosPrograms, CppAndRobios6AndLibrariesRun) {

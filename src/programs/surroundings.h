@@ -32,6 +32,12 @@ struct Move {
   Pose X_WM;
 };
 
+/// New value of a parameter of a device of its robot, as a program requests it.
+struct Setting {
+  std::string device, field;  ///< "drive", "control/vv"
+  double value = 0;
+};
+
 class Surrounded {
  public:
   virtual ~Surrounded() = default;
@@ -47,6 +53,8 @@ class Surrounded {
   virtual bool await(Outside::Clock::time_point until) = 0;
   /// Moves that the answer requested that receive() returned last. They are input of the next tick, as the answer is.
   virtual std::vector<Move> take_moves() = 0;
+  /// Parameters that it set, likewise.
+  virtual std::vector<Setting> take_settings() = 0;
 };
 
 }  // namespace sandlot::programs

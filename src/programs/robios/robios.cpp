@@ -357,11 +357,15 @@ std::optional<std::string> Robios::over_budget() {
   return std::nullopt;
 }
 
-/// Moves of a supervisor, which are requests of their own.
-void Robios::request_moves(std::span<const std::byte> orders) {
+/// Moves of a supervisor and gains of the drive's loops, which are requests of their own.
+void Robios::request_changes(std::span<const std::byte> orders) {
   moves_.clear();
-  if (!spec_.supervisor) return;
+  settings_.clear();
   const Orders read = read_orders(orders);
+  for (const Order& order : read.orders)
+    if (const auto* const control = std::get_if<ControlOrder>(&order); control && control->on != 0)
+      devices_.add_gains(*control, settings_);
+  if (!spec_.supervisor) return;
   for (const Order& order : read.orders)
     if (const auto* const wanted = std::get_if<EntityPose>(&order))
       for (const Being& each : beings_)
@@ -392,7 +396,7 @@ std::optional<OutsideAnswer> Robios::receive() {
   waiting_ = false;
   answered_ = true;
   OutsideAnswer out{OutsideAnswer::Kind::message, memory_->orders()};
-  request_moves(out.bytes);
+  request_changes(out.bytes);
   move_output();
   if (const Orders read = read_orders(out.bytes); read.finished) {
     // What it still has to say; it may be cleaning up.

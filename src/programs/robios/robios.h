@@ -19,7 +19,7 @@
 ///              refused orders.
 /// Limits       1000 orders and 4 MB a turn; 200 lines of its output are logged per turn. Robots are numbered in the order of their
 ///              creation; when one is deleted, those behind it move up. Of a radio that samples more often than the run has control
-///              steps, messages in between are lost. The gains of VWStartControl have no effect. Moves of a supervisor act at the
+///              steps, messages in between are lost. Moves of a supervisor, and gains of VWStartControl, act at the
 ///              beginning of its slot.
 /// Cost         two switches of processes per turn.
 #include "control/program.h"
@@ -68,6 +68,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   void meet(std::span<const Being> beings) override;
   bool await(Clock::time_point until) override;
   std::vector<Move> take_moves() override { return std::move(moves_); }
+  std::vector<Setting> take_settings() override { return std::move(settings_); }
 
  private:
   std::int64_t slot_ns() const;
@@ -77,7 +78,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   Resumed wait_on() const;
   void fill(const Observation& obs);
   void give_turn(const Observation& obs);
-  void request_moves(std::span<const std::byte> orders);
+  void request_changes(std::span<const std::byte> orders);
   void carry_out(std::span<const std::byte> orders, Command& cmd);
   Resumed ended(std::uint8_t how, Command& cmd);
   void move_output();
@@ -102,6 +103,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   std::uint64_t sent_pictures_ = 0;
   std::vector<Being> beings_;
   std::vector<Move> moves_;
+  std::vector<Setting> settings_;
   std::vector<std::string> last_words_;
   OutputFile output_;
   std::size_t lines_ = 0;  ///< of output in this turn

@@ -124,6 +124,7 @@ Status RobotDevices::find_distances(const Description& robot, const Spec& spec) 
 void RobotDevices::find_drive(const Description& robot, const Spec& spec) {
   const Entry* const drive = find_entry(robot.actuators, msg::Twist::ros_type);
   if (!drive) return;
+  drive_ = drive->device;
   twist_ = drive->index;
   odometry_ = index_of<msg::Odometry>(robot.readings, drive->device);
   maneuver_ = index_of<msg::DriveManeuver>(robot.actuators, drive->device);
@@ -477,8 +478,20 @@ bool RobotDevices::carry_out(const Order& order, State& state, Command& cmd) con
     if (camera_) cmd.request_sample_of(*camera_);
     return camera_.has_value();
   }
-  // Notes are for the log alone, moves come as requests of their own, and gains of the controller have no drive yet.
+  // Notes are for the log alone, moves come as requests of their own, and so do gains of the controller.
   return true;
+}
+
+void RobotDevices::add_gains(const ControlOrder& order, std::vector<Setting>& out) const {
+  const DeviceFacts* const facts = facts_of(drive_);
+  if (!facts || !facts->numbers.contains("control.vv")) return;
+  constexpr double shortest_s = 1e-3, longest_s = 1e6,
+                   most = 1e6;  // what the drive takes; RoBIOS has 0 for no integral
+  const auto time_s = [&](double t) { return t > 0 ? std::clamp(t, shortest_s, longest_s) : longest_s; };
+  out.push_back({drive_, "control/vv", std::clamp(order.vv, 0.0, most)});
+  out.push_back({drive_, "control/tv", time_s(order.tv)});
+  out.push_back({drive_, "control/vw", std::clamp(order.vw, 0.0, most)});
+  out.push_back({drive_, "control/tw", time_s(order.tw)});
 }
 
 void RobotDevices::stop(Command& cmd) const {

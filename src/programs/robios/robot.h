@@ -38,6 +38,8 @@ class RobotDevices {
   /// Gives the commands that orders mean. @return false: the robot has nothing for it
   bool carry_out(const Order& order, State& state, Command& cmd) const;
   bool has_radio() const { return reception_.has_value(); }
+  /// Gains of the drive's loops on speed and turning rate, where it has such loops.
+  void add_gains(const sandlot::robios::ControlOrder& order, std::vector<Setting>& out) const;
   /// Stops drive and motors, as the end of a program does.
   void stop(Command& cmd) const;
 
@@ -68,6 +70,7 @@ class RobotDevices {
   bool order_motor(const sandlot::robios::MotorOrder& order, State& state, Command& cmd) const;
 
   std::vector<DeviceFacts> facts_;
+  std::string drive_;  ///< name of the device
   sandlot::robios::Drive drive_kind_ = sandlot::robios::Drive::none;
   double wheel_diameter_m_ = 0, track_m_ = 0, max_speed_mps_ = 0, max_turning_rate_radps_ = 0,
          servo_range_rad_ = 0, max_steering_rad_ = 0, wheelbase_m_ = 0;

@@ -64,9 +64,14 @@ bool Programs::take_answers(ProgramEntry& entry) {
     auto answer = outside.receive();
     if (!answer) return false;
     submit_answer(entry, std::move(*answer));
-    if (auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry.program.get()))
-      for (const programs::Move& move : surrounded->take_moves())
-        commands_.submit(PoseRequest{move.name, move.X_WM}, {});
+    auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry.program.get());
+    if (!surrounded) continue;
+    for (const programs::Move& move : surrounded->take_moves())
+      commands_.submit(PoseRequest{move.name, move.X_WM}, {});
+    const std::string robot = entry.path.substr(0, entry.path.find('/') + 1);
+    for (const programs::Setting& each : surrounded->take_settings())
+      commands_.submit(
+          ParameterRequest{robot + each.device, each.field, Node::scalar(number_text(each.value))}, {});
   }
   return true;
 }
