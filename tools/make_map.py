@@ -7,7 +7,8 @@ writes worlds/maps/indoor.yaml and .pgm. Cut at the height are the collisions (b
 A cell is occupied when one of 5 x 5 points in it lies within a shape, so that thin legs show. With --inside, cells that a point could not reach from
 there are unknown, such as what lies outside the walls; without it, all that is not occupied is free.
 
-Left out, and said so: other shapes than these, models of <include>, poses that are relative to another frame. A plane is ground, not an obstacle.
+Left out, with a warning: other shapes than these, models of <include>, models within models, poses that are relative to another frame or are quaternions.
+A plane is ground, not an obstacle.
 """
 import argparse
 import math
@@ -17,6 +18,21 @@ import xml.etree.ElementTree as ET
 
 OCCUPIED, FREE, UNKNOWN = 0, 254, 205
 POINTS = 5  # a side of a cell
+MOST_CELLS = 2**26  # that a map of Sandlot may have
+
+
+class Wrong(Exception):
+    """A mistake of the user: what is wrong and what would be right."""
+
+
+def numbers(text, count, label):
+    try:
+        values = [float(word) for word in (text or "").split()]
+    except ValueError:
+        values = []
+    if len(values) != count or not all(map(math.isfinite, values)):
+        raise Wrong(f"{label} is '{(text or '').strip()}'; {count} number{'s' if count > 1 else ''} would be right")
+    return values
 
 
 def turn(roll, pitch, yaw):
@@ -42,7 +58,16 @@ class World:
 
     def __init__(self, path):
         self.shapes, self.left_out = [], []
-        for world in ET.parse(path).getroot().iter("world"):
+        try:
+            root = ET.parse(path).getroot()
+        except OSError as error:
+            raise Wrong(f"{path}: {error.strerror}") from None
+        except ET.ParseError as error:
+            raise Wrong(f"{path}:{error.position[0]}: this is not XML ({error}); an SDF world would be right") from None
+        worlds = list(root.iter("world"))
+        if not worlds:
+            raise Wrong(f"{path}: there is no <world> in <{root.tag}>; an SDF world would be right")
+        for world in worlds:
             self.left_out += [f"include of {each.findtext('uri')}" for each in world.findall("include")]
             for model in world.findall("model"):
                 self.add_model(model, IDENTITY, model.get("name"))
@@ -54,7 +79,12 @@ class World:
         if pose.get("relative_to"):
             self.left_out.append(f"{name}: its pose is relative to {pose.get('relative_to')}")
             return None
-        x, y, z, *angles = map(float, pose.text.split())
+        if pose.get("rotation_format", "euler_rpy") != "euler_rpy":
+            self.left_out.append(f"{name}: its pose is a {pose.get('rotation_format')}")
+            return None
+        x, y, z, *angles = numbers(pose.text, 6, f"{name}: <pose>")
+        if pose.get("degrees") in ("true", "1"):
+            angles = map(math.radians, angles)
         return turn(*angles), (x, y, z)
 
     def add_model(self, model, parent, name):
@@ -64,21 +94,25 @@ class World:
         if at is None:
             return
         at = times(parent, at)
+        self.left_out += [f"{name}/{each.get('name')}: a model within a model" for each in model.findall("model")]
         for link in model.findall("link"):
             of_link = self.pose(link, f"{name}/{link.get('name')}")
             for collision in link.findall("collision") if of_link else []:
                 label = f"{name}/{link.get('name')}/{collision.get('name')}"
                 of_shape = self.pose(collision, label)
                 if of_shape:
-                    self.add_shape(collision.find("geometry")[0], times(times(at, of_link), of_shape), label)
+                    shape = collision.find("geometry/*")
+                    if shape is None:
+                        raise Wrong(f"{label}: no shape in <geometry>; a <box> would be right")
+                    self.add_shape(shape, times(times(at, of_link), of_shape), label)
 
     def add_shape(self, shape, pose, label):
         if shape.tag == "box":
-            size = [float(x) / 2 for x in shape.findtext("size").split()]
+            size = [x / 2 for x in numbers(shape.findtext("size"), 3, f"{label}: <size>")]
         elif shape.tag == "cylinder":
-            size = [float(shape.findtext("radius")), float(shape.findtext("length")) / 2]
+            size = [*numbers(shape.findtext("radius"), 1, f"{label}: <radius>"), numbers(shape.findtext("length"), 1, f"{label}: <length>")[0] / 2]
         elif shape.tag == "sphere":
-            size = [float(shape.findtext("radius"))]
+            size = numbers(shape.findtext("radius"), 1, f"{label}: <radius>")
         else:
             if shape.tag != "plane":
                 self.left_out.append(f"{label}: a {shape.tag}")
@@ -103,10 +137,12 @@ def draw(shapes, height, resolution, margin):
     """Rows of pixels from the lowest y upwards, and the lower left corner."""
     cut = [s for s in shapes if abs(s[2][1][2] - height) <= s[3][2]]
     if not cut:
-        sys.exit(f"make_map: no static shape reaches the height {height} m; give another --height")
+        raise Wrong(f"no static shape reaches the height {height} m; give another --height")
     # Corners on multiples of the resolution: two maps of a world lie on one grid.
     low = [math.floor(min(s[2][1][i] - s[3][i] for s in cut) / resolution) for i in range(2)]
     high = [math.ceil(max(s[2][1][i] + s[3][i] for s in cut) / resolution) for i in range(2)]
+    if (high[0] - low[0] + 2 * margin / resolution) * (high[1] - low[1] + 2 * margin / resolution) > MOST_CELLS:
+        raise Wrong(f"the map would have {high[0] - low[0]} x {high[1] - low[1]} cells, of at most {MOST_CELLS}; give a larger --resolution")
     rows = [bytearray([FREE]) * (high[0] - low[0]) for _ in range(high[1] - low[1])]
     step = resolution / POINTS
     for shape in cut:
@@ -125,7 +161,7 @@ def trimmed(rows, low, margin):
     used = [i for i, row in enumerate(rows) if OCCUPIED in row]
     columns = [i for i in range(len(rows[0])) if any(row[i] == OCCUPIED for row in rows)]
     if not used:
-        sys.exit("make_map: nothing is cut at this height; give another --height")
+        raise Wrong("nothing is cut at this height; give another --height")
     empty = bytes([FREE]) * (columns[-1] - columns[0] + 1 + 2 * margin)
     side = bytes([FREE]) * margin
     body = [bytearray(side + row[columns[0]:columns[-1] + 1] + side) for row in rows[used[0]:used[-1] + 1]]
@@ -138,7 +174,7 @@ def hide_unreached(rows, start):
     width, height = len(rows[0]), len(rows)
     column, row = start
     if not (0 <= column < width and 0 <= row < height and rows[row][column] == FREE):
-        sys.exit("make_map: the point --inside is off the map or within a shape")
+        raise Wrong("the point --inside is off the map or within a shape")
     reached, todo = {start}, [start]
     while todo:
         x, y = todo.pop()
@@ -161,8 +197,10 @@ def main():
     parser.add_argument("--margin", type=float, default=0.1, help="free room about what is drawn [m]; 0.1")
     parser.add_argument("--inside", type=float, nargs=2, metavar=("X", "Y"), help="point from which the free cells are reached")
     options = parser.parse_args()
+    if not all(map(math.isfinite, [options.height, options.resolution, options.margin, *(options.inside or [])])):
+        raise Wrong("a number among the options is not finite")
     if options.resolution <= 0 or options.margin < 0:
-        sys.exit("make_map: --resolution must be above 0, --margin not below")
+        raise Wrong("--resolution must be above 0, --margin not below")
     world = World(options.world)
     for each in world.left_out:
         print(f"make_map: left out: {each}", file=sys.stderr)
@@ -170,6 +208,8 @@ def main():
     if options.inside:
         hide_unreached(rows, tuple(math.floor(x / options.resolution) - corner for x, corner in zip(options.inside, low)))
     name = os.path.basename(options.out)
+    if os.path.dirname(options.out):
+        os.makedirs(os.path.dirname(options.out), exist_ok=True)
     with open(options.out + ".pgm", "wb") as file:
         file.write(f"P5\n{len(rows[0])} {len(rows)}\n255\n".encode() + b"".join(reversed(rows)))
     corner = [f"{x * options.resolution:.10g}" for x in low]
@@ -181,4 +221,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (Wrong, OSError) as wrong:
+        print(f"make_map: {wrong}", file=sys.stderr)
+        sys.exit(2)

@@ -77,6 +77,29 @@ class MakeMap(unittest.TestCase):
         self.assertIn("--inside is off the map or within a shape", self.draw(world, *options, "1", "0").stderr)
         self.assertIn("--inside is off the map or within a shape", self.draw(world, *options, "50", "0").stderr)
 
+    def test_a_mistake_is_named_and_the_exit_code_is_2(self):
+        for world, options, words in (("<sdf><a>", (), "world.sdf:1: this is not XML"),
+                                      ("<sdf/>", (), "no <world> in <sdf>"),
+                                      (WORLD.replace("3 2 1.2 0 0 0", "3 2"), (), "shelf: <pose> is '3 2'; 6 numbers would be right"),
+                                      (WORLD.replace("2 2 1<", "2 2 nan<"), (), "shelf/link/high: <size> is '2 2 nan'; 3 numbers would be right"),
+                                      (WORLD.replace("<radius>0.06</radius>", ""), (), "leg/link/leg: <radius> is ''; 1 number would be right"),
+                                      (WORLD.replace("<box><size>2 2 1</size></box>", ""), (), "shelf/link/high: no shape in <geometry>"),
+                                      (WORLD, ("--resolution", "1e-5"), "give a larger --resolution"),
+                                      (WORLD, ("--resolution", "nan"), "not finite"),
+                                      (WORLD, ("--height", "9"), "no static shape reaches the height 9.0 m")):
+            done = self.draw(world, *options)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1 + done.stderr.count("left out"), done.stderr)
+        missing = subprocess.run([sys.executable, TOOL, "nowhere.sdf", self.out], capture_output=True, text=True, check=False)
+        self.assertEqual((missing.returncode, missing.stderr), (2, "make_map: nowhere.sdf: No such file or directory\n"))
+
+    def test_angles_may_be_degrees_and_the_folder_of_the_map_is_made(self):
+        self.out = self.out.parent / "maps" / "map"
+        done = self.draw(WORLD.replace("<pose>1 2 0 0 0 1.5707963267948966", '<pose degrees="true">1 2 0 0 0 90'), "--resolution", "0.5", "--margin", "0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([row[:2] for row in self.rows()], ["##"] * 8)
+
     def test_the_map_of_the_flat_is_up_to_date(self):
         self.out = self.out.with_name("indoor")
         done = subprocess.run([sys.executable, TOOL, ROOT / "worlds/indoor.sdf", self.out, "--height", "0.25", "--inside", "1.6", "4.65"],
