@@ -1,5 +1,7 @@
 #include "controllers/localise/localise.h"
 
+#include "base/log.h"
+
 namespace sandlot::controllers::localise {
 namespace {
 
@@ -28,6 +30,7 @@ Status Localiser::init(const Description& robot, Outputs& out) {
   SL_ASSIGN(laser_, robot.reading<msg::LaserScan>(spec.laser));
   SL_ASSIGN(odometry_, robot.reading<msg::Odometry>(spec.odometry));
   X_BL_ = robot.pose(laser_);
+  path_ = out.path();
   initial_ = out.subscribe<msg::PoseWithCovarianceStamped>("initialpose");
   pose_ = out.publish<msg::PoseWithCovarianceStamped>("amcl_pose");
   transform_ = out.publish<msg::TransformStamped>("map_to_odom");
@@ -59,9 +62,16 @@ void Localiser::take_pose(const msg::PoseWithCovarianceStamped& message) {
     for (std::size_t k = 0; k < 3; ++k)
       covariance[3 * i + k] = message.pose.covariance[6 * axes[i] + axes[k]];
   const std::string& frame = message.header.frame_id;
-  const bool taken = (frame.empty() || frame == spec.frame) && norm(message.pose.pose.q) > 0.5 &&
-                     amcl::set_pose(*model_, state.filter, in_plane(message.pose.pose), covariance);
+  const Status taken = [&]() -> Status {
+    if (!frame.empty() && frame != spec.frame)
+      return Error{
+          "an initial pose in the frame '" + frame + "'", "the map is in '" + spec.frame + "'", {}, {}};
+    if (norm(message.pose.pose.q) <= 0.5)
+      return Error{"an initial pose without an orientation", "w = 1 is along x", {}, {}};
+    return amcl::set_pose(*model_, state.filter, in_plane(message.pose.pose), covariance);
+  }();
   ++(taken ? state.poses : state.refused);
+  if (!taken) log::warning(path_ + ": refused: " + taken.error().what + "; " + taken.error().fix);
 }
 
 void Localiser::step(const Observation& obs, Command& cmd) {

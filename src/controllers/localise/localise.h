@@ -7,6 +7,7 @@
 ///            odometry since the last scan used, whose covariance it has; none while the odometry is older than `odometry_age`.
 ///            `map_to_odom`, geometry_msgs/TransformStamped, with it. `particle_cloud`, geometry_msgs/PoseArray, after each scan
 ///            used.
+/// Errors     an initialpose in another frame, off the map, without an orientation or with a covariance that is none is refused: counted, with a warning in the log.
 /// Begins     as `begin` says: all over the map (global), at `x`, `y`, `yaw` (pose), or with the first initialpose (topic).
 /// Method, errors, limits   navigation/localisation/amcl.h, with the keys of Nav2's AMCL. What became of the scans stands in the
 ///            state, `localise.filter.counts`. No ground truth is read.
@@ -82,6 +83,7 @@ struct Localiser {
   Reading<msg::LaserScan> laser_;
   Reading<msg::Odometry> odometry_;
   Pose X_BL_;
+  std::string path_;  ///< "rover/localiser"
   Subscription<msg::PoseWithCovarianceStamped> initial_;
   Publication<msg::PoseWithCovarianceStamped> pose_;
   Publication<msg::TransformStamped> transform_;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "base/bytes.h"
+#include "base/log.h"
 #include "navigation/localisation/test_rooms.h"
 
 namespace sandlot::controllers::localise {
@@ -240,30 +241,34 @@ TEST(Localise, RefusesPosesThatCannotBe) {
   t.step();
   const std::vector<amcl::Particle> before = t.filter().particles;
   std::uint64_t refused = 0;
-  const auto is_refused = [&] {
+  std::string warning;
+  log::set_listener([&](log::Level, std::string_view text) { warning = text; });
+  const auto is_refused = [&](const char* why) {
     t.step();
+    EXPECT_THAT(warning, testing::HasSubstr(why));
     EXPECT_EQ(t.localiser.state.refused, ++refused);
     EXPECT_EQ(t.localiser.state.poses, 0u);
     for (std::size_t i = 0; i < before.size(); ++i)
       ASSERT_EQ(t.filter().particles[i].pose.x, before[i].pose.x);
   };
   t.put_pose({4, 2, 0}, "odom");
-  is_refused();
+  is_refused("refused: an initial pose in the frame 'odom'; the map is in 'map'");
   t.put_pose({40, 2, 0}, "map");
-  is_refused();
+  is_refused("(40, 2) lies off the map");
   t.put_pose({1e300, 2, 0}, "map");
-  is_refused();
+  is_refused("not finite");
   std::array<double, 36> covariance{};
   covariance[0] = -1;
   t.put_pose({4, 2, 0}, "map", covariance);
-  is_refused();
+  is_refused("no covariance");
   covariance[0] = 1, covariance[7] = 1, covariance[1] = covariance[6] = 2;
   t.put_pose({4, 2, 0}, "map", covariance);
-  is_refused();
+  is_refused("no covariance");
   t.put_pose({4, 2, 0}, "map");
   auto* const topic = topic_cast<msg::PoseWithCovarianceStamped>(t.outputs.inputs()[0].topic.get());
   topic->message.pose.pose.q = {0, 0, 0, 0};
-  is_refused();
+  is_refused("without an orientation");
+  log::set_listener({});
 }
 
 TEST(Localise, GoesOnFromItsStateToTheBit) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/log.h"
 #include "base/text.h"
 
 namespace sandlot::controllers::navigate {
@@ -118,6 +119,8 @@ void Navigate::take_goals(const Observation& obs) {
     const std::string& frame = goal.message.header.frame_id;
     if (!frame.empty() && frame != frame_) {
       ++state.refused;
+      warn(obs.now(), "a goal in the frame '" + frame + "' is refused; " +
+                          (frame_.empty() ? "there is no pose yet" : "poses are in '" + frame_ + "'"));
     } else {
       (void)navigator_->set_goal({in_plane(goal.message.pose), norm(goal.message.pose.q) > 0.5});
       state.driving = true;
@@ -132,6 +135,22 @@ void Navigate::take_goals(const Observation& obs) {
   state.driving = true;
 }
 
+void Navigate::warn(Time now, const std::string& text) {
+  if (warned_ && now >= *warned_ && (now - *warned_).s() < 1) return;
+  warned_ = now;
+  log::warning(status_out_.name + ": " + text);
+}
+
+std::string Navigate::why_blind(const Observation& obs, const navigation::NavigatorInput& in) const {
+  const std::string recently = " in the last " + number_text(spec.timeout_s) + " s";
+  const auto scan = obs.get(laser_);
+  if (!scan.valid || (obs.now() - scan.stamp).s() > spec.timeout_s) return "there was no scan" + recently;
+  if (!in.X_MB) return "there was no pose" + recently;
+  if (in.pose_std_m <= spec.max_pose_std_m) return {};
+  return "the pose is uncertain by " + number_text(std::round(in.pose_std_m * 100) / 100) +
+         " m, max_pose_std is " + number_text(spec.max_pose_std_m) + " m";
+}
+
 void Navigate::step(const Observation& obs, Command& cmd) {
   navigation::NavigatorInput in = input(obs);
   const bool whole = navigator_->restore(std::move(state.navigator));
@@ -143,8 +162,15 @@ void Navigate::step(const Observation& obs, Command& cmd) {
     state.driving = false;
     state.rest_s = spec.pause_s;
     state.since_status_s = 1e6;  // published at once, also after another failure
-    if (step.status == NavStatus::failed && spec.stop_on_failure) state.listed = false;
+    if (step.status == NavStatus::failed) {
+      warn(obs.now(), navigator_->state().reason);
+      if (spec.stop_on_failure) state.listed = false;
+    }
   }
+  // Once for each goal.
+  const double time_s = step.feedback.navigation_time_s;
+  if (state.driving && time_s >= 5 && time_s - period_s_ < 5)
+    if (const std::string why = why_blind(obs, in); !why.empty()) warn(obs.now(), "the robot stands: " + why);
   state.distance_remaining_m = step.feedback.distance_remaining_m;
   msg::Twist twist;
   twist.linear = {step.command.vx_mps, step.command.vy_mps, 0};

@@ -13,7 +13,8 @@
 ///            An orientation of zeros (or no yaw) means any heading.
 /// Errors     goals in a wall, off the map, without a way: `status` has the level ERROR and the reason; the list goes on, or ends with
 ///            stop_on_failure. A goal_pose of another frame, or with one before there is a pose, is refused: counted, the present goal stays. Pose or scan older than
-///            `timeout`, or a pose less certain than max_pose_std: the robot stands.
+///            `timeout`, or a pose less certain than max_pose_std: the robot stands. The log has a warning with the reason of each failure and refusal, and of a
+///            robot that stands so for 5 s; at most one per second.
 /// Method, limits, cost   navigation/navigator/navigator.h. No ground truth is read but where `odometry` names it, no random numbers.
 /// Limits     of several scans in a control step the newest alone. Between the odometry's time and now the robot is taken to keep its
 ///            velocity.
@@ -121,6 +122,9 @@ struct Navigate {
 
  private:
   void take_goals(const Observation& obs);
+  void warn(Time now, const std::string& text);
+  /// Why the robot stands although it has a goal; empty: pose and scan are there.
+  std::string why_blind(const Observation& obs, const navigation::NavigatorInput& in) const;
   /// Pose and velocity as they are now; no pose if it is too old.
   navigation::NavigatorInput input(const Observation& obs);
   void publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step, bool placed);
@@ -140,7 +144,8 @@ struct Navigate {
   Publication<msg::OccupancyGrid> costmap_;
   Publication<msg::DiagnosticStatus> status_;
   // Of one step: members for the memory of their texts and lists.
-  std::string frame_;  ///< of the newest pose; empty: there is none yet
+  std::string frame_;           ///< of the newest pose; empty: there is none yet
+  std::optional<Time> warned_;  ///< time of the last warning; concerns the log alone
   msg::Path path_out_;
   msg::OccupancyGrid costmap_out_;
   msg::DiagnosticStatus status_out_;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "base/bytes.h"
+#include "base/log.h"
 #include "navigation/navigator/test_clutter.h"
 
 namespace sandlot::controllers::navigate {
@@ -196,6 +197,51 @@ TEST(Navigate, RefusesGoalsOfOtherFramesAndAnswersBadOnes) {
   t.put_goal(7.9, 0);
   t.step();
   EXPECT_EQ(t.controller.state.failed, 3u) << "on the map: it fails later, when there is no way";
+}
+
+/// Entries of the log while it exists.
+struct LogEntries {
+  std::vector<std::string> all;
+  LogEntries() {
+    log::set_listener([this](log::Level, std::string_view text) { all.emplace_back(text); });
+  }
+  ~LogEntries() { log::set_listener({}); }
+};
+
+TEST(Navigate, WarnsInTheLogWhyAGoalFailsOrIsRefused) {
+  LogEntries entries;
+  Trial t(Trial::to({}));
+  t.steps(2);
+  t.put_goal(0, 1, "map");
+  t.step();
+  ASSERT_EQ(entries.all.size(), 1u);
+  EXPECT_EQ(entries.all[0],
+            "rover/navigator: a goal in the frame 'map' is refused; poses are in 'rover/odom'");
+  t.put_goal(50, 0);
+  t.step();
+  EXPECT_EQ(entries.all.size(), 1u) << "one per second";
+  t.steps(9);
+  t.put_goal(50, 0);
+  t.step();
+  ASSERT_EQ(entries.all.size(), 2u);
+  EXPECT_THAT(entries.all[1],
+              HasSubstr("rover/navigator: the goal (50, 0) is off the map; it covers 20 x 20 m"));
+}
+
+TEST(Navigate, WarnsOnceForEachGoalThatItStandsAndWhy) {
+  LogEntries entries;
+  Trial t(Trial::to({{2, 0, {}}}));
+  t.odometry.message.pose.covariance[0] = 1.44;
+  t.steps(48);
+  EXPECT_TRUE(entries.all.empty());
+  t.steps(20);
+  ASSERT_EQ(entries.all.size(), 1u);
+  EXPECT_EQ(entries.all[0],
+            "rover/navigator: the robot stands: the pose is uncertain by 1.2 m, max_pose_std is 0.5 m");
+  t.put_goal(0, 1);
+  for (int i = 0; i < 60; ++i) t.step(false);
+  ASSERT_EQ(entries.all.size(), 2u);
+  EXPECT_EQ(entries.all[1], "rover/navigator: the robot stands: there was no scan in the last 0.5 s");
 }
 
 TEST(Navigate, StandsWithoutScans) {
