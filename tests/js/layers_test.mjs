@@ -188,6 +188,7 @@ test("a goal by click and drag arrives at the program, in the frame of its map",
   await page.mouse.click(...(await onPage(-1, -1)));
   await until("another goal", async () => (await probe.number("rover/guide.goals")) === 2);
   near(Math.abs(await probe.number("rover/guide.yaw")), Math.PI, 0.05, "yaw of a click");
+  await until("the program's answer", async () => (await page.locator(by("goal-status")).textContent()) === "failed: goal 2 is in a wall");
 });
 
 test("the other topic of poses that its programs read can be chosen", { skip }, async () => {

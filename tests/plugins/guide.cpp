@@ -3,8 +3,10 @@
 #include "control/plugin.h"
 
 #include <limits>
+#include <string>
 
 #include "base/math.h"
+#include "messages/diagnostic_msgs.h"
 
 namespace {
 
@@ -47,6 +49,7 @@ struct Guide {
   sandlot::Publication<msg::PoseArray> particles;
   sandlot::Publication<msg::Odometry> estimate;
   sandlot::Publication<msg::PoseWithCovarianceStamped> fix;
+  sandlot::Publication<msg::DiagnosticStatus> status;
 
   sandlot::Status init(const sandlot::Description&, sandlot::Outputs& out) {
     goal = out.subscribe<msg::PoseStamped>("goal_pose");
@@ -56,6 +59,7 @@ struct Guide {
     particles = out.publish<msg::PoseArray>("particles");
     estimate = out.publish<msg::Odometry>("estimate");
     fix = out.publish<msg::PoseWithCovarianceStamped>("fix");
+    status = out.publish<msg::DiagnosticStatus>("status");
     return {};
   }
 
@@ -66,6 +70,10 @@ struct Guide {
       state.y = got.message.pose.p.y;
       state.yaw = 2 * sandlot::math::atan2(q.z, q.w);
       ++state.goals;
+      msg::DiagnosticStatus refusal;
+      refusal.level = msg::DiagnosticStatus::error;
+      refusal.message = "failed: goal " + std::to_string(state.goals) + " is in a wall";
+      cmd.publish(status, refusal);
     }
     if (const auto got = obs.get(first); got.fresh) {
       state.first_x = got.message.pose.pose.p.x;

@@ -53,11 +53,16 @@ export class Goals {
   /** What it can be told, and which of these the next pose is. */
   inputs: GoalInput[] = [];
   input: GoalInput | null = null;
-  /** What can be told has changed while the tool is held. */
+  /** Newest status of the program that reads the pose, as it publishes it: "failed: the goal (9, 9) is off the map". Empty: none. */
+  status = '';
+  /** What can be told, or the status, has changed while the tool is held. */
   readonly onChange = new Signal();
   private publisher: {key: string; publish: (value: unknown) => boolean; close: () => void} | null = null;
   /** Name of what was chosen last: another robot is told the same if it can be. */
   private chosen = '';
+  /** The topic of the status. */
+  private watched = '';
+  private stopWatching = (): void => undefined;
 
   constructor(private readonly client: Client, private readonly store: Store, private readonly scene: SceneView, private readonly layers: Layers,
               private readonly tell: (text: string, kind?: 'info' | 'warning') => void) {
@@ -89,12 +94,14 @@ export class Goals {
   end(): void {
     this.robot = this.input = null;
     this.inputs = [];
+    this.watch();
     this.layers.hold(null);
   }
 
   choose(input: GoalInput): void {
     this.chosen = inputName(input, this.robot ?? '');
     this.input = input;
+    this.watch();
   }
 
   aim(aim: Aim): void {
@@ -133,6 +140,25 @@ export class Goals {
   private setInputs(inputs: GoalInput[]): void {
     this.inputs = inputs;
     this.input = inputs.find((i) => i.topic === this.input?.topic && i.type === this.input.type) ?? inputs.find((i) => inputName(i, this.robot ?? '') === this.chosen) ?? inputs[0] ?? null;
+    this.watch();
+  }
+
+  /** Follows the status of the program that reads the chosen pose, if it publishes one. */
+  private watch(): void {
+    const programs = this.input?.programs ?? [];
+    const topic = [...this.client.channels.values()].find((c) => c.schemaName === 'diagnostic_msgs/msg/DiagnosticStatus' && programs.some((p) => c.topic.startsWith(`/${p}/`)))?.topic ?? '';
+    if (topic === this.watched) return;
+    this.stopWatching();
+    this.stopWatching = () => undefined;
+    this.watched = topic;
+    this.status = '';
+    if (topic === '') return;
+    this.stopWatching = this.client.subscribe(topic, (message) => {
+      const {message: text} = message.value() as {message: string};
+      if (text === this.status) return;
+      this.status = text;
+      this.onChange.emit();
+    });
   }
 
   private publisherOf(input: GoalInput): {publish: (value: unknown) => boolean} {

@@ -25,7 +25,7 @@ export class DriveSection {
         this.limit('Turning', 'rad/s', 0.1, 6, 0.1, () => teleop.angular_radps, (v) => teleop.setLimits(teleop.linear_mps, v)));
     const active = (instance.controllers ?? []).filter((c) => !c.inactive);
     if (active.length > 0) {
-      this.element.append(h('p', {class: 'note'}, `${active.map((c) => c.name).join(', ')} commands this robot too. While you steer, only you are heard; let go and it goes on by itself.`));
+      this.element.append(h('p', {class: 'note'}, `Active controllers: ${active.map((c) => c.name).join(', ')}. While you steer, only you are heard; let go, and the robot goes on by itself.`));
     }
     this.stop = teleop.onChange.on(() => this.steering());
     this.steering();

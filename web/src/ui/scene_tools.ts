@@ -111,7 +111,7 @@ export class SceneTools {
       }},
     }, inputName(each, robot)));
     this.banner.replaceChildren(icon('flag'), h('span', {}, 'Press where ', h('b', {}, robot), input === null || isGoal(input) ? ' shall go' : ' is', ', drag for the heading'),
-        ...choices, h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Done'));
+        goals.status === '' ? '' : h('span', {class: 'faint', title: 'Status of the program', testid: 'goal-status'}, goals.status), ...choices, h('button', {class: 'small', on: {click: () => void this.cancel()}}, 'Done'));
   }
 
   private beginGoal(): void {
