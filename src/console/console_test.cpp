@@ -459,6 +459,10 @@ TEST(Console, PublishesOnTopicsThatProgramsRead) {
   EXPECT_TRUE(has(talk.refused("command rover2/initialpos PoseWithCovarianceStamped {}"),
                   "there is no device or topic 'rover2/initialpos' that takes commands; did you mean "
                   "'rover2/initialpose'?"));
+  for (const char* const name : {"initialpose", "/initialpose", "rover7/initialpose"})
+    EXPECT_TRUE(has(talk.refused("command " + std::string(name) + " PoseWithCovarianceStamped {}"),
+                    "'rover2/initialpose'"))
+        << name;
   EXPECT_TRUE(has(
       talk.refused(R"(command rover2/initialpose PoseWithCovarianceStamped {"pose": {"pos": 1}})"), "pos"));
 }

@@ -174,6 +174,17 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
     return Error{"'" + std::string(target) + "' takes no " + std::string(type.substr(0, 60)),
                  suggestion(type, takes)};
   }
+  // "goal_pose" is meant for a robot whose programs read such a topic.
+  if (known.empty())
+    for (const auto& each : call.simulation().entities())
+      if (const auto* const programs = call.simulation().programs_of(each->instance.name))
+        for (const auto& program : *programs)
+          if (program->outputs)
+            for (const Outputs::Input& input : std::as_const(*program->outputs).inputs())
+              if (const std::string& name = input.topic->name();
+                  name.substr(name.rfind('/') + 1) == target.substr(target.rfind('/') + 1) &&
+                  known.size() < 10)
+                known.push_back(name.substr(1));
   call.unknown_thing = true;
   return Error{"there is no device or topic '" + std::string(target.substr(0, 100)) + "' that takes commands",
                suggestion(target, known)};

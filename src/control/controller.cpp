@@ -35,14 +35,19 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
                                                     const char* what) const {
   const Entry* found = nullptr;
   std::vector<std::string> names;
+  const std::string* other_type = nullptr;  // of what has the name, but not the type
   // Without a name, devices precede topics of programs: an estimator that comes later changes nothing for those that read a
   // drive's own odometry.
   const bool has_device = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
     return entry.type == type && !entry.program;
   });
   for (const Entry& entry : entries) {
-    if (entry.type != type) continue;
-    names.push_back(entry.device);
+    if (entry.type != type) {
+      if (device == entry.device && !other_type) other_type = &entry.type;
+      continue;
+    }
+    // A device has one entry for each of its levels.
+    if (names.empty() || names.back() != entry.device) names.push_back(entry.device);
     if (device.empty() && entry.program && has_device) continue;
     const bool match = device.empty() || device == entry.device || device == entry.device + "/" + entry.level;
     if (match && found && found->device != entry.device)
@@ -57,6 +62,9 @@ Result<const Description::Entry*> Description::find(const std::vector<Entry>& en
   const std::string wanted = device.empty()
                                  ? std::string(what) + " of type " + type
                                  : std::string(what) + " '" + std::string(device) + "' of type " + type;
+  if (other_type)
+    return Error{"robot '" + robot + "' has no " + wanted,
+                 "'" + std::string(device) + "' has " + *other_type};
   if (!names.empty()) return Error{"robot '" + robot + "' has no " + wanted, suggestion(device, names)};
   const KindsWith lookup = kinds_with;
   const std::string kinds = lookup ? lookup(type, &entries == &actuators) : "";

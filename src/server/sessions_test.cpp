@@ -133,6 +133,8 @@ TEST(Sessions, ATokenOpensItsRobotAlone) {
     EXPECT_EQ(refused(one, subscribe(topic)).substr(0, 17), "there is no topic") << topic;
   EXPECT_EQ(refused(one, {{"op", "publish"}, {"topic", "/rover2/drive"}, {"msg", json::object()}}),
             "nothing takes messages on '/rover2/drive'; did you mean '/rover1/drive'?");
+  EXPECT_EQ(refused(one, {{"op", "publish"}, {"topic", "/drive"}, {"msg", json::object()}}),
+            "nothing takes messages on '/drive'; did you mean '/rover1/drive'?");
   for (const char* service : {"/set_simulation_state", "/sandlot/console", "/sandlot/watch",
                               "/get_entity_state", "/delete_entity", "/step_simulation"})
     EXPECT_EQ(one.call(service, json::object())["result"], false) << service;

@@ -260,6 +260,15 @@ TEST(Waypoints, ReadsPointsAndNamesWhatIsMissing) {
   config.set("odometry", Node::scalar("gps"));
   EXPECT_EQ(complaint(config),
             "robot 'rover' has no reading 'gps' of type nav_msgs/msg/Odometry; known are: drive");
+  // A device has an entry for each level, and a name that has another type is known.
+  Description levels = description();
+  levels.readings.push_back(levels.readings[0]);
+  levels.readings.push_back({"fix", "", msg::NavSatFix::ros_type, 0, {}});
+  EXPECT_EQ(levels.reading<msg::Odometry>("gps").error().text(),
+            "robot 'rover' has no reading 'gps' of type nav_msgs/msg/Odometry; known are: drive");
+  EXPECT_EQ(levels.reading<msg::Odometry>("fix").error().text(),
+            "robot 'rover' has no reading 'fix' of type nav_msgs/msg/Odometry; 'fix' has "
+            "sensor_msgs/msg/NavSatFix");
 }
 
 TEST(Waypoints, StateSurvivesSaving) {

@@ -183,12 +183,18 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
       drives = true;
     }
   }
-  const std::string near = nearest(topic, known);
+  // "/goal_pose", or that of another robot, is meant for one that has such a topic.
+  const auto last_part = [](std::string_view name) { return name.substr(name.rfind('/') + 1); };
+  const auto namesake = std::find_if(known.begin(), known.end(), [&](const std::string& name) {
+    return last_part(name) == last_part(topic);
+  });
+  const std::string near = namesake != known.end() ? *namesake : nearest(topic, known);
   return Error{"nothing takes messages on '/" + std::string(topic.substr(0, 200)) + "'",
                !near.empty() ? "did you mean '/" + near + "'?"
-               : drives      ? "robots take them as /ROBOT/cmd_vel and /ROBOT/DEVICE"
-               : visible     ? "a client commands what it has claimed"
-                             : "nothing in this world takes commands"};
+               : drives  ? "robots take them as /ROBOT/cmd_vel, /ROBOT/DEVICE and what their programs read, "
+                           "such as /ROBOT/goal_pose"
+               : visible ? "a client commands what it has claimed"
+                         : "nothing in this world takes commands"};
 }
 
 }  // namespace sandlot::server
