@@ -200,9 +200,10 @@ TEST(SlowInstall, TheFilterAloneGivesTheEstimatesOfTheRunThatWasRecorded) {
   const std::string all_equal = "301 estimates equal the recorded ones to the bit, 0 differ\n";
   const Printed of_fused = estimate("estimator", wheels + eyes + inertia + fused),
                 of_located = estimate("locator", wheels + eyes + inertia + gps + located);
-  EXPECT_EQ(of_fused.out, all_equal);
+  EXPECT_THAT(of_fused.out,
+              AllOf(HasSubstr(all_equal), HasSubstr("imu: "), HasSubstr(" used"), Not(HasSubstr("gps: "))));
   EXPECT_EQ(of_fused.exit_code, 0);
-  EXPECT_EQ(of_located.out, all_equal);
+  EXPECT_THAT(of_located.out, AllOf(HasSubstr(all_equal), HasSubstr("gps: ")));
   EXPECT_EQ(of_located.exit_code, 0);
 
   // The comparison sees when one sensor is missing, and when one comes a step early.
@@ -216,7 +217,10 @@ TEST(SlowInstall, TheFilterAloneGivesTheEstimatesOfTheRunThatWasRecorded) {
                                  " --device imu=" + package.example("estimate_recording/filters.yaml"));
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.out, HasSubstr("filters.yaml:1: this is no line of `sandlot topic echo --json`"));
-  EXPECT_THAT(estimate("locater", wheels).out, HasSubstr("there is no filter 'locater'"));
+  EXPECT_THAT(estimate("locater", wheels).out,
+              HasSubstr("there is no filter 'locater'; known are: estimator, locator"));
+  EXPECT_THAT(estimate("estimator", " --device gps" + gps.substr(gps.find('='))).out,
+              HasSubstr("the filter has no sensor 'gps'; known are: base/odometry, eyes/odometry, imu"));
 }
 
 /// Paths of the installed headers, from its include folder.

@@ -10,7 +10,8 @@
 ///
 /// Arguments   a file of filters, and which of them; then the messages of its sensors, by their names. A filter sees what a device has
 ///   measured in the same step, and what another program (`--program`) published in the next one, as a controller does.
-/// Output      estimates as JSON, one a line, in the form of `sandlot topic echo --json`. With --expect, they are held against recorded ones.
+/// Output      estimates as JSON, one a line, in the form of `sandlot topic echo --json`; at the end, on standard error, what became of the
+///   messages of each sensor. With --expect, estimates are held against recorded ones.
 /// Exit code   0: all went well; 1: the estimates differ from those that were expected; 2: wrong arguments or files.
 #include <algorithm>
 #include <bit>
@@ -158,6 +159,21 @@ class Expected {
   long equal_ = 0, different_ = 0;
 };
 
+/// Final outcomes of the messages: "gps: 118 used, 2 gated, 1 started".
+void report_outcomes(const ekf::Spec& spec, const ekf::State& state) {
+  for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
+    std::string text;
+    for (const EnumName<ekf::Outcome>& outcome : ekf::enum_names(ekf::Outcome{}))
+      if (const auto count = outcome.value == ekf::Outcome::queued
+                                 ? 0
+                                 : state.sensors[i].counts[static_cast<std::size_t>(outcome.value)];
+          count > 0)
+        text += std::string(text.empty() ? "" : ", ") + std::to_string(count) + " " + outcome.name;
+    std::fprintf(stderr, "%s: %s\n", spec.sensors[i].name.c_str(),
+                 text.empty() ? "no messages" : text.c_str());
+  }
+}
+
 [[noreturn]] void usage() {
   std::fprintf(stderr,
                "usage: estimate_recording FILTERS.yaml FILTER [--device NAME=FILE] [--program NAME=FILE] "
@@ -172,7 +188,13 @@ ekf::Spec read_filter(const std::string& file, const std::string& name) {
   text << in.rdbuf();
   const Node root = or_fail(parse_yaml(text.str(), file));
   const Node* const filter = root.find(name);
-  if (!filter) fail(file + ": there is no filter '" + name + "'");
+  if (!filter) {
+    std::string known;
+    if (root.is_map())
+      for (const Node::Entry& each : root.entries())
+        known += std::string(known.empty() ? "" : ", ") + each.key;
+    fail(file + ": there is no filter '" + name + "'; known are: " + known);
+  }
   return or_fail(read_spec<ekf::Spec>(*filter, "/" + name));
 }
 
@@ -193,7 +215,11 @@ int main(int argc, char** argv) {
     if ((option != "--device" && option != "--program") || equals == std::string::npos) usage();
     const std::string name = value.substr(0, equals);
     const std::optional<std::size_t> sensor = ekf::find_sensor(spec, name);
-    if (!sensor) fail("the filter has no sensor '" + name + "'");
+    if (!sensor) {
+      std::string known;
+      for (const auto& each : spec.sensors) known += std::string(known.empty() ? "" : ", ") + each.name;
+      fail("the filter has no sensor '" + name + "'; known are: " + known);
+    }
     sources.push_back({*sensor,
                        option == "--program" ? step : Time{},
                        Lines(value.substr(equals + 1)),
@@ -212,7 +238,12 @@ int main(int argc, char** argv) {
   const auto any_left = [&] {
     return std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.seen.has_value(); });
   };
-  for (Time now; expected ? expected->more() : any_left(); now = now + step) {
+  // Recordings of robots begin decades after 0; steps lie where those from 0 would.
+  std::optional<Time> first;
+  for (const Source& source : sources)
+    if (source.seen && (!first || *source.seen < *first)) first = source.seen;
+  for (Time now{first ? first->ns / step.ns * step.ns : 0}; expected ? expected->more() : any_left();
+       now = now + step) {
     for (Source& source : sources)
       for (; source.seen && *source.seen <= now; source.advance())
         std::visit([&](const auto& message) { ekf::add(spec, state, source.sensor, message); },
@@ -229,5 +260,6 @@ int main(int argc, char** argv) {
       fail(status.error().text());
     std::printf("{\"time\":%.9f,\"message\":%s}\n", now.s(), json.c_str());
   }
+  report_outcomes(spec, state);
   return expected && !expected->report() ? 1 : 0;
 }
