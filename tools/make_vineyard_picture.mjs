@@ -5,6 +5,7 @@ import { writeFileSync } from "node:fs";
 import { chromium } from "../tests/js/node_modules/playwright-core/index.mjs";
 import { Scratch, Served, until } from "../tests/js/served.mjs";
 import { Viewer } from "../tests/js/viewer.mjs";
+import { indexedPng } from "./indexed_png.mjs";
 
 const file = process.argv[2] ?? "docs/images/vineyard_page.png";
 // MARIO has turned into its second row: the ellipses differ most, by wheels alone, by eyes alone and by all sensors. It takes some minutes to get there.
@@ -38,21 +39,16 @@ try {
   });
   await page.waitForTimeout(6000);  // what is still being drawn
   const taken = (await page.screenshot()).toString("base64");
-  // Grass has as many colours as pixels: of each channel four bits, and the file is half as large.
-  const smaller = await browser.newPage();
-  const png = await smaller.evaluate(async (data) => {
+  const { width, height, pixels } = await page.evaluate(async (data) => {
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: "image/png" }));
-    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext("2d");
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
     context.drawImage(bitmap, 0, 0);
     const image = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    image.data.forEach((v, i) => { if (i % 4 !== 3 && v < 250) image.data[i] = v & 0xf0 | 0x08; });
-    context.putImageData(image, 0, 0);
-    const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: "image/png" })).arrayBuffer());
     let text = "";
-    for (let i = 0; i < bytes.length; i += 4096) text += String.fromCharCode(...bytes.subarray(i, i + 4096));
-    return btoa(text);
+    for (let i = 0; i < image.data.length; i += 4096) text += String.fromCharCode(...image.data.subarray(i, i + 4096));
+    return { width: bitmap.width, height: bitmap.height, pixels: btoa(text) };
   }, taken);
-  writeFileSync(file, Buffer.from(png, "base64"));
+  writeFileSync(file, indexedPng(width, height, Buffer.from(pixels, "base64")));
 } finally {
   await browser.close();
   viewer.close();
