@@ -186,15 +186,18 @@ test('types are known with and without msg', () => {
 test('frames lie where they begin, where a body is, or where a program says', () => {
   const owner = { name: 'rover', start: [1, 2, 0, 1, 0, 0, 0] };
   const bodies = (frame) => frame === 'rover/base';
-  assert.equal(placeOf('', owner, bodies, false), 'world');
-  assert.equal(placeOf('world', owner, bodies, false), 'world');
-  assert.equal(placeOf('rover/base', owner, bodies, true, true), 'body');
-  assert.equal(placeOf('rover/odom', owner, bodies, false), 'start');
-  assert.equal(placeOf('rover/odom', owner, bodies, true), 'start');
-  assert.equal(placeOf('odom', owner, bodies, false, true), 'told');
-  assert.equal(placeOf('map', owner, bodies, true), 'world');
-  assert.equal(placeOf('map', owner, bodies, false), 'start', 'a filter with a receiver counts from where it began');
-  assert.equal(placeOf('map', null, bodies, false), 'world');
+  assert.equal(placeOf('', owner, bodies, []), 'world');
+  assert.equal(placeOf('world', owner, bodies, []), 'world');
+  assert.equal(placeOf('rover/base', owner, bodies, ['map'], true), 'body');
+  assert.equal(placeOf('rover/odom', owner, bodies, []), 'start');
+  assert.equal(placeOf('rover/odom', owner, bodies, ['map']), 'start');
+  assert.equal(placeOf('odom', owner, bodies, [], true), 'told');
+  assert.equal(placeOf('map', owner, bodies, ['map']), 'world');
+  assert.equal(placeOf('map', owner, bodies, []), 'start', 'a filter with a receiver counts from where it began');
+  assert.equal(placeOf('rover/map', owner, bodies, ['map', 'pose']), 'start', 'a cost map where a filter of its own believes the robot to be');
+  assert.equal(placeOf('rover/map', owner, bodies, ['map', 'particles']), 'world', 'particles are in a map of the world');
+  assert.equal(placeOf('rover2/map', owner, bodies, ['map']), 'world');
+  assert.equal(placeOf('map', null, bodies, []), 'world');
   // Upright, though the robot stood on a slope; turned as it stood.
   const start = [1, 2, 3, Math.cos(0.25), 0, Math.sin(0.25), 0];
   assert.deepEqual([...startOf(start, undefined)], [1, 2, 3, 1, 0, 0, 0]);

@@ -138,16 +138,19 @@ export type Place = 'world' | 'start' | 'body' | 'told';
 
 /**
  * The world has the frames `world`, `<robot>/<link>` and `<robot>/<device>`. Others are what programs count from: `odom` is where the robot
- * began, unless a program tells where it is, as one that localises does; any other is the world's if maps or particles are given in it, since
- * those are made of the world, else it begins with the robot too.
+ * began, unless a program tells where it is, as one that localises does. Any other is the world's if particles or a map are given in it, since
+ * those are made of the world; but not by the map of a frame named after the robot, such as `mario/map`, which is made where a filter of its own
+ * believes it to be. Else it begins with the robot, too.
+ * @param kinds  of the layers that are given in the frame
  */
-export function placeOf(frame: string, owner: Instance | null, bodies: (frame: string) => boolean, has_map: boolean, is_told = false): Place {
+export function placeOf(frame: string, owner: Instance | null, bodies: (frame: string) => boolean, kinds: readonly LayerKind[], is_told = false): Place {
   if (frame === '' || frame === 'world') return 'world';
   if (bodies(frame)) return 'body';
   if (is_told) return 'told';
   if (!owner?.start) return 'world';
   const last = frame.slice(frame.lastIndexOf('/') + 1);
-  return /^odom/.test(last) || !has_map ? 'start' : 'world';
+  const of_world = kinds.includes('particles') || (kinds.includes('map') && !frame.startsWith(`${owner.name}/`));
+  return /^odom/.test(last) || !of_world ? 'start' : 'world';
 }
 
 const identity = Float64Array.of(0, 0, 0, 1, 0, 0, 0);

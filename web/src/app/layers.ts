@@ -140,8 +140,8 @@ export class Layers {
     const chosen = this.places[frame];
     const is_told = this.told(frame, owner) !== null;
     if (chosen !== undefined && (chosen !== 'told' || is_told) && this.scene.framePose(frame) === null) return chosen;
-    const has_map = [...this.running.values()].some((l) => l.frame === frame && (l.kind === 'map' || l.kind === 'particles'));
-    return placeOf(frame, this.store.instance(owner) ?? null, (f) => this.scene.framePose(f) !== null, has_map, is_told);
+    const kinds = [...this.running.values()].filter((l) => l.frame === frame).map((l) => l.kind);
+    return placeOf(frame, this.store.instance(owner) ?? null, (f) => this.scene.framePose(f) !== null, kinds, is_told);
   }
 
   private told(frame: string, owner: string): Told | null {
