@@ -80,6 +80,8 @@ Session::Options Run::session_options() {
           },
       .tick = [this](Simulation& simulation,
                      std::optional<Time> measured) { return tick(simulation, measured); }};
+  if (!spec_.steered && options.may_not_rewind.empty())
+    options.may_not_rewind = "snapshots for that are kept with --port alone";
   if (hooks_) {
     options.save_beside = [this] { return hooks_->save(); };
     options.load_beside = [this](std::span<const std::byte> saved) { hooks_status_ = hooks_->load(saved); };
