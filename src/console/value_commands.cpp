@@ -174,20 +174,20 @@ Result<SlotFound> find_slot(CommandCall& call, std::string_view target, std::str
     return Error{"'" + std::string(target) + "' takes no " + std::string(type.substr(0, 60)),
                  suggestion(type, takes)};
   }
-  // "goal_pose" is meant for a robot whose programs read such a topic.
+  // "goal_pose", or that of another robot, is meant for one whose programs read such a topic.
+  const auto last_part = [](std::string_view name) { return name.substr(name.rfind('/') + 1); };
+  std::string namesake;
   if (known.empty())
     for (const auto& each : call.simulation().entities())
       if (const auto* const programs = call.simulation().programs_of(each->instance.name))
         for (const auto& program : *programs)
-          if (program->outputs)
+          if (program->outputs && namesake.empty())
             for (const Outputs::Input& input : std::as_const(*program->outputs).inputs())
-              if (const std::string& name = input.topic->name();
-                  name.substr(name.rfind('/') + 1) == target.substr(target.rfind('/') + 1) &&
-                  known.size() < 10)
-                known.push_back(name.substr(1));
+              if (last_part(input.topic->name()) == last_part(target))
+                namesake = input.topic->name().substr(1);
   call.unknown_thing = true;
   return Error{"there is no device or topic '" + std::string(target.substr(0, 100)) + "' that takes commands",
-               suggestion(target, known)};
+               namesake.empty() ? suggestion(target, known) : "did you mean '" + namesake + "'?"};
 }
 
 }  // namespace

@@ -189,7 +189,8 @@ TEST_F(RecorderTest, WhileItIsBehindItKeepsTheProofAsFarAsAQuarterOfTheQueueAndG
   simulation->add_observer(recorder->get());
   // Nobody reads: the queue fills, then the quarter of it for proofs; ticks after that are lost whole.
   for (int i = 0; i < 20000 && (*recorder)->so_far().lost_frames < 100; ++i) advance(*simulation, 1);
-  ASSERT_GE((*recorder)->so_far().lost_frames, 100u) << "logs and hashes of ticks may not wait without a limit";
+  ASSERT_GE((*recorder)->so_far().lost_frames, 100u)
+      << "logs and hashes of ticks may not wait without a limit";
   const std::uint64_t behind_ticks = simulation->tick_index();
   // The tick that brings a robot is lost, too.
   simulation->submit(SpawnRequest{rover("late", rover_model(), {0, -2, 0}, 0, "")});
@@ -232,7 +233,8 @@ TEST_F(RecorderTest, WhileItIsBehindItKeepsTheProofAsFarAsAQuarterOfTheQueueAndG
       last_hash = found.hash;
       ++hashes;
     } else if (topic == recording::tf_static_topic) {
-      const std::string_view bytes(reinterpret_cast<const char*>((*message)->data.data()), (*message)->data.size());
+      const std::string_view bytes(reinterpret_cast<const char*>((*message)->data.data()),
+                                   (*message)->data.size());
       late |= bytes.find("late/") != std::string_view::npos;
     } else if ((*message)->log_time <= behind_ticks * 10'000'000) {
       waited_bytes += (*message)->data.size();

@@ -64,8 +64,9 @@ TEST(PlanarCollision, LinksThatAreFixedTogetherTurnAsTheirMassesAndTurnedTensors
   m->links[0].inertial = {.mass_kg = 2, .X_LCo = {{0, -0.1, 0}, {}}, .moments = {0.3, 0.4, 0.5}};
   m->links[1].name = "other";
   m->links[1].X_ML.p = {1, 0, 0};
-  m->links[1].inertial = {
-      .mass_kg = 3, .X_LCo = {{0, 0.1, 0.05}, quat_from_rpy(math::pi / 2, 0, 0)}, .moments = {0.1, 0.2, 0.25}};
+  m->links[1].inertial = {.mass_kg = 3,
+                          .X_LCo = {{0, 0.1, 0.05}, quat_from_rpy(math::pi / 2, 0, 0)},
+                          .moments = {0.1, 0.2, 0.25}};
   model::Joint joint;
   joint.type = model::JointType::fixed;
   joint.child = 1;
