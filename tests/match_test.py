@@ -126,6 +126,27 @@ class Play(Match):
         self.assertEqual(swapped["state_hash"], one["state_hash"])
         self.assertEqual(swapped["goals"], one["goals"][::-1])
 
+    def test_penalty_kicks_decide_a_draw(self):
+        # No goal falls in four seconds; then one penalty kick each until one team has one more, each at most 24 s.
+        recording = self.file("match.mcap")
+        result = self.play("teams/passing", OURS, "--duration", "2 s", "--set", "shootout=1", "--set", "overtime=1", "--record", recording, "--swap")
+        self.assertEqual(result["goals"], [0, 0])
+        ours, theirs = result["penalty_kicks"]
+        self.assertEqual(abs(ours - theirs), 1)
+        self.assertEqual(result["winner"], result["names"][ours < theirs])
+        # The first team plays as magenta: the referee names the sides the other way round.
+        self.assertIn("penalty kicks %d : %d" % (theirs, ours), result["summary"]["stopped"])
+        lines = self.sandlot("topic", "echo", recording, "/rules/referee/decision", "--json").stdout.splitlines()
+        decisions = [json.loads(line)["message"] for line in lines]
+        # All parts in their order; goals and misses of the kicks, and the end, which is decided in the same tick as the last one.
+        self.assertEqual([each["stage"] for each in decisions if each["rule"] == "begin"],
+                         ["first_half", "second_half", "overtime_first", "overtime_second", "penalties"])
+        kicks = [each for each in decisions if each["stage"] == "penalties" and each["rule"] in ("goal", "no_goal")]
+        self.assertEqual(len(kicks) % 2, 0)
+        for side, goals in (("cyan", theirs), ("magenta", ours)):
+            self.assertEqual(len([each for each in kicks if each["team"] == side and each["rule"] == "goal"]), goals)
+        self.assertEqual(decisions[-1]["rule"], "end")
+
     def test_text_for_people_has_score_and_seed(self):
         said = self.sandlot("match", "teams/passing", OURS, *SHORT, "--duration", "2 s", "--seed", "5").stdout
         self.assertRegex(said, r"^Passing \d+ : \d+ Run and kick")
@@ -265,8 +286,8 @@ class Tournament(Match):
     def command(self, *arguments):
         return ["tournament", *arguments, "--out", self.file("cup"), *SHORT, "--jobs", "2"]
 
-    def cup(self, *arguments, code=0):
-        return self.sandlot(*self.command(*arguments), code=code)
+    def cup(self, *arguments, code=0, timeout=100):
+        return self.sandlot(*self.command(*arguments), code=code, timeout=timeout)
 
     def games_under_way(self):
         """Process numbers of the games of this tournament."""
@@ -351,6 +372,38 @@ class Tournament(Match):
         self.cup("teams/passing", OURS, bad, "--duration", "2 s", "--seeds", "1")
         self.assertTrue(self.read()["ended"])
         self.assertEqual(self.read()["stored"], 1)
+
+    def test_teams_that_fail_lose_by_rule_and_harm_nobody(self):
+        sandbox.skip_without(self)
+        silent = self.program_team("Silent", "import time\ntime.sleep(1000)", "deadline: 0.5 s, patience: 0.5 s")
+        crash = self.program_team("Crash", "import os\n" + ANSWERS % "os.abort() if step.number > 5 else None", "deadline: 0.5 s, restart: never")
+        late = self.program_team("Late", ANSWERS % "import time; time.sleep(0.1)", "deadline: 5 ms")
+        flood = self.program_team("Flood", ANSWERS % (
+            "[robot.command('drive', {'linear': {'x': float(i % 3)}}) for i in range(300)]; print('x' * 5000)"))
+        self.cup("teams/passing", OURS, silent, crash, late, flood, "--duration", "2 s", "--seeds", "1", timeout=400)
+        cup = self.read()
+        self.assertTrue(cup["ended"])
+        self.assertEqual(cup["not_played"], 0)
+        failing, games = {"Silent", "Crash", "Late"}, cup["games"]
+        self.assertEqual(len(games), 15)
+        for game in games:
+            fails = failing & {game["left"], game["right"]}
+            self.assertEqual(game["walk_over"], bool(fails), game)
+            if len(fails) == 1:
+                self.assertIn(fails.copy().pop() + " loses by rule", game["reason"])
+                lost = game["goals_left"] - game["goals_right"] if game["left"] in fails else game["goals_right"] - game["goals_left"]
+                self.assertLessEqual(lost, -3, game)
+            elif fails:
+                self.assertIn("neither has won", game["reason"])
+        for row in cup["table"]:
+            if row["team"] in failing:
+                self.assertEqual((row["won"], row["points"] <= 2), (0, True), row)
+            else:
+                self.assertGreaterEqual(row["won"], 3, row)
+        # The game of two others is the one that they play alone.
+        both = next(game for game in games if {game["left"], game["right"]} == {"Passing", "Run and kick"})
+        alone = self.play("teams/passing", OURS, "--duration", "2 s", "--seed", "1")
+        self.assertEqual(both["state_hash"], alone["state_hash"])
 
     def test_a_game_has_its_time(self):
         # A game of ten minutes is not played in a tenth of a second.

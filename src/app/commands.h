@@ -58,12 +58,14 @@ struct RunOptions {
   int at_a_time = 0;             ///< of those; 0: as many as the machine has processors
 };
 int run(const RunOptions& options);
-/// Functions of a caller of run_once(); both may be empty.
+/// Functions of a caller of run_once(); each may be empty.
 struct RunWatch {
   /// Before programs are started. Errors: nothing is run.
   std::function<Status(Simulation&)> on_world;
   /// Some times a second of wall time. False: the run ends.
   std::function<bool()> goes_on;
+  /// At the end, with the world as it is then.
+  std::function<void(const Simulation&)> on_end;
 };
 /// One run, with its server and the programs that it starts. Prints warnings and, where asked for, progress.
 Result<Summary> run_once(const RunOptions& options, bool shows_progress, const RunWatch& watch = {});

@@ -71,6 +71,7 @@ Result<tournament::GameResult> read_game(const std::string& text) {
   tournament::GameResult out;
   try {
     json.at("goals").get_to(out.goals);
+    json.at("penalty_kicks").get_to(out.penalty_kicks);
     const std::string walk_over = json.at("walk_over");
     out.walk_over = !walk_over.empty();
     out.reason = out.walk_over ? walk_over : json.at("summary").at("stopped").get<std::string>();

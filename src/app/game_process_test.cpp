@@ -36,17 +36,18 @@ TEST(GameProcess, ArgumentsHaveAllThatMakesTheGame) {
 
 TEST(GameProcess, ResultIsThatOfTheJson) {
   const auto played = read_game(
-      R"({"goals": [2, 1], "walk_over": "", "state_hash": "00000000000000ff", "sim_seconds": 61.5,
+      R"({"goals": [2, 2], "penalty_kicks": [1, 3], "walk_over": "", "state_hash": "00000000000000ff", "sim_seconds": 61.5,
           "recording": "a.mcap", "summary": {"stopped": "the game has ended"}})");
   ASSERT_TRUE(played) << played.error().text();
-  EXPECT_THAT(played->goals, ElementsAre(2, 1));
+  EXPECT_THAT(played->goals, ElementsAre(2, 2));
+  EXPECT_THAT(played->penalty_kicks, ElementsAre(1, 3));
   EXPECT_FALSE(played->walk_over);
   EXPECT_EQ(played->reason, "the game has ended");
   EXPECT_EQ(played->state_hash.value, 255u);
   EXPECT_EQ(played->sim_s, 61.5);
   EXPECT_EQ(played->recording, "a.mcap");
   const auto by_rule = read_game(
-      R"({"goals": [0, 3], "walk_over": "A loses by rule", "state_hash": "1", "sim_seconds": 1, "recording": "",
+      R"({"goals": [0, 3], "penalty_kicks": [0, 0], "walk_over": "A loses by rule", "state_hash": "1", "sim_seconds": 1, "recording": "",
           "summary": {"stopped": "the game has ended"}})");
   ASSERT_TRUE(by_rule);
   EXPECT_TRUE(by_rule->walk_over);
@@ -57,9 +58,9 @@ TEST(GameProcess, TextsThatAreNoResultAreRefused) {
   for (
       const char* const text :
       {"", "[]", "3", "{", "{}", R"({"goals": [1]})",
-       R"({"goals": [1, 2], "walk_over": 3, "state_hash": "1", "sim_seconds": 1, "recording": ""})",
-       R"({"goals": ["a", 2], "walk_over": "", "state_hash": "1", "sim_seconds": 1, "recording": "", "summary": {"stopped": ""}})",
-       R"({"goals": [1, 2], "walk_over": "", "state_hash": "no", "sim_seconds": 1, "recording": "", "summary": {"stopped": ""}})"})
+       R"({"goals": [1, 2], "penalty_kicks": [0, 0], "walk_over": 3, "state_hash": "1", "sim_seconds": 1, "recording": ""})",
+       R"({"goals": ["a", 2], "penalty_kicks": [0, 0], "walk_over": "", "state_hash": "1", "sim_seconds": 1, "recording": "", "summary": {"stopped": ""}})",
+       R"({"goals": [1, 2], "penalty_kicks": [0, 0], "walk_over": "", "state_hash": "no", "sim_seconds": 1, "recording": "", "summary": {"stopped": ""}})"})
     EXPECT_FALSE(read_game(text)) << text;
 }
 

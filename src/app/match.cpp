@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "formats/scenario/scenario.h"
 #include "programs/remote/remote.h"
+#include "sim/watch/values.h"
 #include "sim/world/simulation.h"
 
 namespace sandlot::app {
@@ -81,6 +82,13 @@ std::string fault_of(const char* side, const std::vector<OutsideProgram>& outsid
   return "";
 }
 
+/// Goals of a side in the penalty kicks after a draw; 0 where there were none.
+int penalty_kicks(const Simulation& world, std::size_t side) {
+  auto value = ValueExpression::compile(world, fmt::format("rules/referee.teams[{}].shots_in", side));
+  const auto found = value ? value->evaluate() : std::nullopt;
+  return found ? static_cast<int>(found->value) : 0;
+}
+
 /// Refuses a program of a team that may hold up the game.
 Status check_time(const model::ControllerDecl& program) {
   const auto check = [&](const char* key, double most_s) -> Status {
@@ -142,6 +150,11 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
               const Steps all = steps_of(side, outside);
               return all.steps >= enough_steps && all.too_late();
             });
+          },
+      .on_end =
+          [&](const Simulation& world) {
+            for (std::size_t i = 0; i < 2; ++i)
+              out.result.penalty_kicks[i] = penalty_kicks(world, spec.swap ? 1 - i : i);
           }};
   SL_ASSIGN(out.summary, run_once(run, shows_progress, watch));
   const Summary& summary = out.summary;
@@ -177,8 +190,9 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
   } else if (!faults[1].empty()) {
     lose(1);
   }
-  if (result.goals[0] != result.goals[1])
-    result.winner = result.names[result.goals[0] > result.goals[1] ? 0 : 1];
+  if (!result.walk_over.empty()) result.penalty_kicks = {};
+  const auto& decides = result.goals[0] != result.goals[1] ? result.goals : result.penalty_kicks;
+  if (decides[0] != decides[1]) result.winner = result.names[decides[0] > decides[1] ? 0 : 1];
   return out;
 }
 

@@ -51,8 +51,8 @@ std::string strengths_svg(const std::vector<TableRow>& table) {
   return out + "</svg>\n";
 }
 
-std::string score_text(const GameRow& game) {
-  return game.played ? fmt::format("{} : {}", game.goals_left, game.goals_right) : "-";
+std::string result_text(const GameRow& game) {
+  return game.played ? tournament::score_text(game) : "-";
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -69,7 +69,7 @@ void add_games(ReportPage& page, const TournamentSummary& summary) {
     const std::string end = !game.played ? "not played: " : game.walk_over ? "walk-over: " : "";
     rows.push_back({{fmt::format("{}{}", game.round, game.replay ? ", replay" : "")},
                     {game.left},
-                    {score_text(game), game.recording.empty() ? "" : link_to(game_page_file(game.recording))},
+                    {result_text(game), game.recording.empty() ? "" : link_to(game_page_file(game.recording))},
                     {game.right},
                     {std::to_string(game.seed)},
                     {end + game.reason},
@@ -164,7 +164,7 @@ std::string game_page_file(const std::string& recording) {
 std::string game_page(const GameRow& game, const std::vector<RecordedDecision>& decisions) {
   constexpr double before_s = 3;  // what led to a decision
   ReportPage page(
-      fmt::format("{} {} {}", game.left, score_text(game), game.right),
+      fmt::format("{} {} {}", game.left, result_text(game), game.right),
       fmt::format("Round {}, seed {}. {} began at negative x, as cyan. {}.", game.round, game.seed, game.left,
                   game.walk_over ? "Walk-over: " + game.reason : "End: " + game.reason));
   const std::string file = file_name(game.recording);

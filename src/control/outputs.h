@@ -69,6 +69,14 @@ class Outputs {
   }
   const Status& status() const { return status_; }
 
+  /// A probable mistake of the robot's description that the program can live with; `sandlot check` reports it.
+  struct Remark {
+    std::string what, fix;
+    std::string rule;  ///< kind of a rule: without one of it in the world the remark does not hold; "": always
+  };
+  void remark(Remark remark) { remarks_.push_back(std::move(remark)); }
+  std::span<const Remark> remarks() const { return remarks_; }
+
   template <class M>
   void set(Publication<M> handle, const M& message) {
     SL_CHECK(handle.index < outputs_.size());
@@ -92,7 +100,7 @@ class Outputs {
   void adopt(Outputs& before);
 
   const std::string& path() const { return path_; }
-  bool empty() const { return outputs_.empty() && inputs_.empty(); }
+  bool empty() const { return outputs_.empty() && inputs_.empty() && remarks_.empty(); }
   std::span<const Output> all() const { return outputs_; }
   std::span<Output> all() { return outputs_; }
   std::span<const Input> inputs() const { return inputs_; }
@@ -106,6 +114,7 @@ class Outputs {
   std::vector<Output> outputs_;
   std::vector<Input> inputs_;
   Status status_;
+  std::vector<Remark> remarks_;
 };
 
 }  // namespace sandlot

@@ -12,8 +12,11 @@ namespace {
 
 void print_match(const Match& match) {
   const MatchResult& result = match.result;
+  const auto [ours, theirs] = result.penalty_kicks;
   fmt::print("{} {} : {} {}{}\n", result.names[0], result.goals[0], result.goals[1], result.names[1],
-             result.winner.empty() ? "   a draw" : "");
+             ours + theirs > 0       ? fmt::format("   {} : {} by penalty kicks", ours, theirs)
+             : result.winner.empty() ? "   a draw"
+                                     : "");
   if (!result.walk_over.empty()) fmt::print("{}\n", result.walk_over);
   const Summary& summary = match.summary;
   fmt::print(

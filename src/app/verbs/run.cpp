@@ -108,6 +108,7 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, const R
   Progress progress;
   std::optional<Served> served;
   std::optional<ServedRefbox> refbox;
+  Session* session = nullptr;
   using Clock = std::chrono::steady_clock;
   Clock::time_point looked = Clock::now();
   // Held back until there is a page, so that its log has them, too.
@@ -126,6 +127,7 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, const R
           },
       .on_answer = [](const std::string& answer) { log::info(answer); },
       .on_ready = [&](const RunParts& parts) -> Status {
+        session = &parts.session;
         if (watch.on_world) SL_TRY(watch.on_world(parts.session.simulation()));
         catch_interrupts();  // before there are processes and folders of theirs to be left
         SL_TRY(serve(options, parts, served));
@@ -151,6 +153,7 @@ Result<Summary> run_once(const RunOptions& options, bool shows_progress, const R
           },
       .on_end =
           [&](Summary& summary) {
+            if (watch.on_end && session) watch.on_end(session->simulation());
             if (refbox) summary.refbox = refbox->stop();
             if (!served) return;
             const ServerSummary ended = served->stop();

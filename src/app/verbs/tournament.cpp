@@ -230,8 +230,8 @@ int play_tournament(const TournamentOptions& options) {
       std::fflush(stdout);
       return;
     }
-    fmt::print("{:>5}  round {}  {} {} : {} {}{}{}\n", ended, game.round, game.left, game.goals_left,
-               game.goals_right, game.right, game.stored ? "  (from the store)" : "",
+    fmt::print("{:>5}  round {}  {} {} {}{}{}\n", ended, game.round, game.left, tournament::score_text(game),
+               game.right, game.stored ? "  (from the store)" : "",
                game.walk_over ? "  walk-over: " + game.reason : "");
     std::fflush(stdout);
   };

@@ -29,7 +29,7 @@ Error no_device(const char* key, const std::string& name) {
 
 }  // namespace
 
-Status SoccerPlayer::find_devices(const Description& robot) {
+Status SoccerPlayer::find_devices(const Description& robot, Outputs& out) {
   SL_ASSIGN(drive_, robot.actuator<msg::Twist>(spec.drive));
   take(odometry_, robot.reading<msg::Odometry>(spec.drive));
   take(image_, robot.reading<msg::Image>(spec.eye));
@@ -64,6 +64,12 @@ Status SoccerPlayer::find_devices(const Description& robot) {
   SL_TRY(check("radio", spec.radio, usual.radio, packets_ && radio_));
   SL_TRY(check("referee", spec.referee, usual.referee, referee_ || words_));
   SL_TRY(check("battery", spec.battery, usual.battery, battery_.has_value()));
+  if (!image_ && !objects_ && !poses_)
+    out.remark({"the player has no device '" + spec.eye + "' to see the ball with",
+                "give the robot an omni_camera '" + spec.eye + "', or name another one by the key eye", ""});
+  if (!referee_ && !words_)
+    out.remark({"the player has no device '" + spec.referee + "': it does not hear the referee, and plays on while the game is stopped",
+                "give the robot '" + spec.referee + ": {kind: referee_link}'", "referee"});
   if (image_) X_BE_ = robot.pose(*image_);
   if (objects_) X_BE_ = robot.pose(*objects_);
   if (ranges_) X_BL_ = robot.pose(*ranges_);
@@ -72,7 +78,7 @@ Status SoccerPlayer::find_devices(const Description& robot) {
 }
 
 Status SoccerPlayer::init(const Description& robot, Outputs& out) {
-  SL_TRY(find_devices(robot));
+  SL_TRY(find_devices(robot, out));
   std::size_t digits = robot.robot.size();
   while (digits > 0 && robot.robot[digits - 1] >= '0' && robot.robot[digits - 1] <= '9') --digits;
   team_ = spec.team.empty() ? robot.robot.substr(0, digits) : spec.team;

@@ -64,7 +64,7 @@ struct SoccerPlayer {
   bool fits() const;
 
  private:
-  Status find_devices(const Description& robot);
+  Status find_devices(const Description& robot, Outputs& out);
   void sense_self(const Observation& obs);
   void see_objects(const Observation& obs);
   void see_picture(const Observation& obs);

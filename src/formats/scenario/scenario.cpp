@@ -569,6 +569,8 @@ Result<Scenario> scenario_of_tree(Node root, const std::string& file, std::span<
   SL_TRY(add_team_robots(root, vars, file, unused_vars));
   if (root.is_null() && !root.place().file) root.set_place(place_in(file));
   SL_ASSIGN(Scenario scenario, read_root(root, file, diagnostics));
+  // A file that several scenarios include has more than each of them needs.
+  std::erase_if(unused_vars, [&](const auto& each) { return each.second.file && *each.second.file != file; });
   scenario.unused_vars = std::move(unused_vars);
   return scenario;
 }

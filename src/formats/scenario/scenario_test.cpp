@@ -249,8 +249,9 @@ TEST(Scenario, IncludesLieBelowTheIncludingFile) {
   const std::string folder = testing::TempDir() + "sandlot_includes/";
   std::filesystem::create_directories(folder + "sub");
   std::ofstream(folder + "top.yaml")
-      << "version: 1\ninclude: [a.yaml, sub/b.yaml]\nname: top\ntime: {substeps: 3}\n";
-  std::ofstream(folder + "a.yaml") << "version: 1\nname: a\nseed: 1\ntime: {step: 5 ms, substeps: 7}\n";
+      << "version: 1\ninclude: [a.yaml, sub/b.yaml]\nname: top\ntime: {substeps: 3}\nvars: {mine: 1}\n";
+  std::ofstream(folder + "a.yaml")
+      << "version: 1\nname: a\nseed: 1\ntime: {step: 5 ms, substeps: 7}\nvars: {theirs: 1}\n";
   std::ofstream(folder + "sub/b.yaml") << "seed: 2\nworld: w.sdf\n";
   std::ofstream(folder + "loop.yaml") << "version: 1\ninclude: sub/back.yaml\n";
   std::ofstream(folder + "sub/back.yaml") << "\ninclude: [../loop.yaml]\n";
@@ -263,6 +264,9 @@ TEST(Scenario, IncludesLieBelowTheIncludingFile) {
   EXPECT_EQ(s->setup.substeps, 3);
   EXPECT_EQ(s->setup.step.s(), 0.005);
   EXPECT_EQ(base_folder(*s, s->world_place) + "/", folder + "sub/");
+  // A part has variables for scenarios that need them.
+  ASSERT_EQ(s->unused_vars.size(), 1u);
+  EXPECT_EQ(s->unused_vars[0].first, "mine");
   const auto loop = read_scenario(folder + "loop.yaml", {}, diagnostics);
   ASSERT_FALSE(loop);
   EXPECT_EQ(loop.error().text(), folder + "sub/back.yaml:2:11: /include: '../loop.yaml' includes itself");

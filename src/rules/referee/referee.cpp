@@ -224,10 +224,22 @@ struct Referee {
       if (state.decisions.size() < most_pending) state.decisions.push_back(message_of(context, each));
     for (const soccer::Placement& each : output.placements) put(each, actions);
     for (const soccer::Exclusion& each : output.exclusions) exclude(context, each, actions);
+    const bool had_more = !state.decisions.empty() || !state.words.empty();
     publish(context, actions);
-    if (output.ended && spec.stop_run)
-      actions.stop("the game has ended: " + spec.teams[0] + " " + std::to_string(state.game.score[0]) +
-                   " : " + std::to_string(state.game.score[1]) + " " + spec.teams[1]);
+    // One decision and one word are published in a tick: the run ends with the last one.
+    const bool ends = output.ended || had_more;
+    if (ends && state.game.stage == soccer::Stage::ended && state.decisions.empty() && state.words.empty() && spec.stop_run)
+      actions.stop("the game has ended: " + result_text());
+  }
+
+  std::string result_text() const {
+    const auto line = [&](std::uint32_t a, std::uint32_t b) {
+      return spec.teams[0] + " " + std::to_string(a) + " : " + std::to_string(b) + " " + spec.teams[1];
+    };
+    const soccer::TeamRecord &a = state.game.teams[0], &b = state.game.teams[1];
+    std::string text = line(state.game.score[0], state.game.score[1]);
+    if (a.shots + b.shots > 0) text += ", penalty kicks " + std::to_string(a.shots_in) + " : " + std::to_string(b.shots_in);
+    return text;
   }
 
   /// The path of a robot's link; empty: it has none.

@@ -53,6 +53,13 @@ std::string table_csv(const TournamentSummary& summary) { return csv(summary.tab
 std::string pairs_csv(const TournamentSummary& summary) { return csv(summary.pairs); }
 std::string games_csv(const TournamentSummary& summary) { return csv(summary.games); }
 
+std::string score_text(const GameRow& game) {
+  std::string text = fmt::format("{} : {}", game.goals_left, game.goals_right);
+  if (game.penalties_left + game.penalties_right > 0)
+    text += fmt::format(" ({} : {} by penalty kicks)", game.penalties_left, game.penalties_right);
+  return text;
+}
+
 std::string as_text(const TournamentSummary& summary) {
   std::size_t width = 4;
   for (const TableRow& row : summary.table) width = std::max(width, row.team.size());

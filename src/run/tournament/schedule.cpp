@@ -101,14 +101,15 @@ Meeting meeting_of(std::size_t a, std::size_t b, std::span<const ScoredGame> pla
   for (const ScoredGame& each : played) {
     const auto [left, right] = each.game.teams;
     if (std::min(left, right) != out.a || std::max(left, right) != out.b) continue;
-    const int difference = (left == out.a ? 1 : -1) * (each.goals[0] - each.goals[1]);
+    const int side = left == out.a ? 1 : -1, difference = side * (each.goals[0] - each.goals[1]);
+    const int decision = difference != 0 ? difference : side * each.penalty_kicks;
     ++out.games;
     out.left_is_a = left == out.a;
     if (each.game.replay) {
       ++out.replays;
-      out.last_replay = difference;
+      out.last_replay = decision;
     } else {
-      out.wins += (difference > 0) - (difference < 0);
+      out.wins += (decision > 0) - (decision < 0);
       out.goals += difference;
     }
   }

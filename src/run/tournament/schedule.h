@@ -9,7 +9,7 @@
 ///                 teams; then those that met least often meet again. With an odd number, the lowest team that had none has a bye, which
 ///                 counts as a won game each.
 ///   knockout      the bracket by the order in which teams are given, the strongest first; byes go to the first ones. A meeting is decided
-///                 by won games, then by goals; a tie by one more game with the next seed, and after three of those by the order of teams.
+///                 by won games (also by penalty kicks), then by goals; a tie by one more game with the next seed, and after three of those by the order of teams.
 ///
 /// Seeds    the k-th game of two teams with each other has seed first_seed + k - 1.
 /// Limits   a knockout has no game for the third place.
@@ -60,6 +60,7 @@ struct Game {
 struct ScoredGame {
   Game game;
   std::array<int, 2> goals;
+  int penalty_kicks = 0;  ///< after a draw: goals of the first team minus those of the second one. A draw all the same, but in a knockout
 };
 
 /// Games to be played next, which do not depend on each other; empty: the tournament has ended.

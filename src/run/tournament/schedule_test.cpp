@@ -264,6 +264,28 @@ TEST(Knockout, AMeetingIsDecidedByWinsThenByGoals) {
   EXPECT_EQ(standings(two, goals)[0].team, 1u);
 }
 
+TEST(Knockout, PenaltyKicksDecideADraw) {
+  // Team 1 wins the second of two draws by penalty kicks, on either side; no game is played again.
+  const Schedule schedule{Format::knockout, 2, 2};
+  std::vector<ScoredGame> all;
+  for (const Game& game : next_games(schedule, all)) {
+    const int for_team_1 = game.teams[0] == 1 ? 1 : -1;
+    all.push_back({game, {2, 2}, game.seed == 2 ? for_team_1 : 0});
+  }
+  EXPECT_TRUE(next_games(schedule, all).empty());
+  const auto table = standings(schedule, all);
+  EXPECT_EQ(table[0].team, 1u);
+  EXPECT_EQ(table[0].drawn, 2);  // draws all the same
+  EXPECT_FALSE(table[0].by_order);
+  // A tie after both is played again, and decided by the penalty kicks of that game.
+  all[1].penalty_kicks = 0;
+  const auto again = next_games(schedule, all);
+  ASSERT_EQ(again.size(), 1u);
+  all.push_back({again[0], {0, 0}, again[0].teams[0] == 1 ? 1 : -1});
+  EXPECT_TRUE(next_games(schedule, all).empty());
+  EXPECT_EQ(standings(schedule, all)[0].team, 1u);
+}
+
 TEST(Schedule, RefusesWhatIsNoTournament) {
   const auto refusal = [](const Schedule& schedule) {
     const Status status = check(schedule);

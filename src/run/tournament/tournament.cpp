@@ -43,16 +43,19 @@ class Results {
     if (!store_) return {};
     SL_ASSIGN(const std::int64_t experiment, experiment_of(spec, match));
     const auto [left, right] = result.goals;
-    return store_->add(experiment, {match.game.seed,
-                                    result.sim_s,
-                                    result.reason,
-                                    hash_text(result.state_hash.value),
-                                    {{"", double(left - right), !result.walk_over},
-                                     {"left", double(left), std::nullopt},
-                                     {"right", double(right), std::nullopt}}});
+    std::vector<statistics::StoredCriterion> criteria{{"", double(left - right), !result.walk_over},
+                                                      {"left", double(left), std::nullopt},
+                                                      {"right", double(right), std::nullopt}};
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      if (result.penalty_kicks[i] > 0)
+        criteria.push_back({kicks_of[i], double(result.penalty_kicks[i]), std::nullopt});
+    return store_->add(experiment, {match.game.seed, result.sim_s, result.reason,
+                                    hash_text(result.state_hash.value), std::move(criteria)});
   }
 
  private:
+  static constexpr std::array<const char*, 2> kicks_of{"left penalties", "right penalties"};
+
   Result<std::int64_t> experiment_of(const TournamentSpec& spec, const Match& match) {
     const auto& [left, right] = match.teams;
     const auto known = experiments_.find({left.content, right.content});
@@ -77,6 +80,8 @@ class Results {
       if (each.team.empty()) out.walk_over = !each.success.value_or(true);
       else if (each.team == "left") out.goals[0] = static_cast<int>(each.value.value_or(0));
       else if (each.team == "right") out.goals[1] = static_cast<int>(each.value.value_or(0));
+      for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+        if (each.team == kicks_of[i]) out.penalty_kicks[i] = static_cast<int>(each.value.value_or(0));
     }
     return out;
   }
@@ -101,6 +106,8 @@ GameRow row_of(const Match& match, const GameResult& result, bool stored) {
   out.right = match.teams[1].name;
   out.goals_left = result.goals[0];
   out.goals_right = result.goals[1];
+  out.penalties_left = result.penalty_kicks[0];
+  out.penalties_right = result.penalty_kicks[1];
   out.walk_over = result.walk_over;
   out.replay = match.game.replay;
   out.stored = stored;
@@ -275,7 +282,9 @@ Result<TournamentSummary> play_tournament(const TournamentSpec& spec, const Play
         out.games.push_back(*rows[i]);
         continue;
       }
-      played.push_back({games[i], {rows[i]->goals_left, rows[i]->goals_right}});
+      played.push_back({games[i],
+                        {rows[i]->goals_left, rows[i]->goals_right},
+                        rows[i]->penalties_left - rows[i]->penalties_right});
       out.stored += rows[i]->stored;
       out.games.push_back(*rows[i]);
     }

@@ -9,7 +9,8 @@
 /// after its end, however sudden. How many games run at a time changes nothing but the time it takes.
 ///
 /// Store    an experiment per pair of contents, sides and options; `stopped` is the reason, criterion '' has the difference of goals, its
-///          `success` is false for a walk-over; criteria 'left' and 'right' have the goals.
+///          `success` is false for a walk-over; criteria 'left' and 'right' have the goals, 'left penalties' and 'right penalties' those of
+///          penalty kicks after a draw.
 /// Failures a game without a result stays open: it is named, the other games of its round are played, and those of later rounds wait for it.
 ///          The same command again plays it again.
 /// Limits   results of teams with equal contents are those of one team. The caller says what a team's content is.
@@ -55,6 +56,7 @@ struct Match {
 /// Result of a game, in the order of its teams.
 struct GameResult {
   std::array<int, 2> goals{};
+  std::array<int, 2> penalty_kicks{};  ///< goals of those that decide a draw
   bool walk_over = false;
   std::string reason;  ///< for the end, or for the walk-over
   StateHash state_hash;
@@ -69,6 +71,7 @@ struct GameRow {
   int round = 1;
   std::string left, right;
   int goals_left = 0, goals_right = 0;
+  int penalties_left = 0, penalties_right = 0;
   bool played = true, walk_over = false, replay = false, stored = false;
   std::uint64_t seed = 0;
   double sim_s = 0;
@@ -92,8 +95,14 @@ struct GameRow {
     visit(Field{"state_hash", "", "Hash of the state at the end."}, s.state_hash);
     visit(Field{"recording", "", "File of the recording; empty for none."}, s.recording);
     visit(Field{"stored", "", "Whether the result was taken from the store of results."}, s.stored);
+    visit(Field{"penalties_left", "1", "Goals of the team on the left in the penalty kicks after a draw."},
+          s.penalties_left);
+    visit(Field{"penalties_right", "1", "Those of the other team."}, s.penalties_right);
   }
 };
+
+/// "1 : 1 (3 : 2 by penalty kicks)".
+std::string score_text(const GameRow& game);
 
 struct TableRow {
   std::string team;

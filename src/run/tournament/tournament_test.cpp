@@ -279,6 +279,27 @@ TEST(Tournament, LaterRoundsWaitForAGameWithoutAResult) {
   EXPECT_EQ(first->not_played, 1u);
 }
 
+TEST(Tournament, PenaltyKicksAreStoredAndDecideAMeeting) {
+  const TestFolder folder;
+  const TournamentSpec spec = tournament_spec(Format::knockout, 2, 1, folder.file("results.db"));
+  const auto b_wins = [&](const Match& match) -> Result<GameResult> {
+    GameResult out = chance(match);
+    out.goals = {1, 1};
+    out.penalty_kicks = match.teams[0].name == "B" ? std::array{3, 2} : std::array{2, 3};
+    return out;
+  };
+  for (const std::uint64_t stored : {0u, 1u}) {
+    const auto all = play_tournament(spec, b_wins);
+    ASSERT_TRUE(all) << all.error().text();
+    EXPECT_TRUE(all->ended);
+    EXPECT_EQ(all->stored, stored);
+    ASSERT_EQ(all->games.size(), 1u);
+    EXPECT_EQ(all->table[0].team, "B");
+    EXPECT_EQ(score_text(all->games[0]), all->games[0].left == "B" ? "1 : 1 (3 : 2 by penalty kicks)"
+                                                                   : "1 : 1 (2 : 3 by penalty kicks)");
+  }
+}
+
 TEST(Tournament, RefusesTwoTeamsOfOneNameAndStoresThatAreNone) {
   const TestFolder folder;
   TournamentSpec spec = tournament_spec(Format::round_robin, 2, 1);
@@ -302,7 +323,7 @@ TEST(TournamentReports, HaveALineForEachRow) {
   EXPECT_THAT(games_csv(all),
               HasSubstr("1," + game.left + "," + game.right + "," + std::to_string(game.goals_left) + "," +
                         std::to_string(game.goals_right) + ",1,true,false,false,the game ended,60.5," +
-                        hash_text(game.state_hash.value) + ",,false\n"));
+                        hash_text(game.state_hash.value) + ",,false,0,0\n"));
   EXPECT_THAT(as_text(all), HasSubstr("round-robin, 6 games"));
 }
 

@@ -69,6 +69,7 @@ std::vector<Finding> lint(const Simulation& simulation) {
   check_gains(simulation, findings);
   check_actuators(simulation, findings);
   check_sensors(simulation, findings);
+  check_programs(simulation, findings);
   return findings.take();
 }
 

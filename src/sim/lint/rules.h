@@ -31,6 +31,7 @@ void check_gains(const Simulation& simulation, Findings& findings);
 void check_actuators(const Simulation& simulation, Findings& findings);
 void check_sensors(const Simulation& simulation, Findings& findings);
 void check_surfaces(const Simulation& simulation, Findings& findings);
+void check_programs(const Simulation& simulation, Findings& findings);
 void check_units(const Simulation& simulation, Findings& findings);
 
 /// Box around the collision shapes of a model (`visuals`: and around its visuals) in M; planes and terrain aside.
