@@ -230,7 +230,7 @@ double rim_radius(const Catadioptric& m) {
 }
 
 std::optional<Place2> see(const Catadioptric& m, Vec3 d) {
-  const double across = math::hypot(d.x, d.y), length = norm(d);
+  const double across = std::sqrt(d.x * d.x + d.y * d.y), length = norm(d);
   if (length < 1e-300) return std::nullopt;
   double q = 0;
   const double rim = rim_radius(m);

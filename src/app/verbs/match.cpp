@@ -20,7 +20,7 @@ void print_match(const Match& match) {
   if (!result.walk_over.empty()) fmt::print("{}\n", result.walk_over);
   const Summary& summary = match.summary;
   fmt::print(
-      "{} ({})\n", summary.stopped,
+      "{} ({})\n", summary.stopped.empty() ? "the game was broken off" : summary.stopped,
       result.swapped ? result.names[1] + " began at negative x" : result.names[0] + " began at negative x");
   fmt::print("{:.1f} s simulated in {:.1f} s, {:.1f} x real time; seed {}; hash {:016x}\n", summary.sim_s,
              summary.wall_s, summary.real_time_factor, result.seed, result.state_hash.value);
