@@ -132,6 +132,12 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
   if (spec.half_s) choose("half", number_text(*spec.half_s));
   run.spec.overrides.insert(run.spec.overrides.begin(), overrides.begin(), overrides.end());
 
+  // All topics of ten robots are 1.6 MB/s, half of it /tf. A replay makes what is left out again.
+  if (!run.spec.record_file.empty()) {
+    if (run.spec.record_topics.empty()) run.spec.record_topics = {"/rules/*", "/*/player/state", "/*/truth/pose"};
+    if (run.spec.record_compression.empty()) run.spec.record_compression = "zstd";
+  }
+
   std::vector<OutsideProgram> outside;
   const RunWatch watch{
       .on_world =
