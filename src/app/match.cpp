@@ -134,7 +134,8 @@ Result<Match> play_match(const MatchSpec& spec, bool shows_progress) {
 
   // All topics of ten robots are 1.6 MB/s, half of it /tf. A replay makes what is left out again.
   if (!run.spec.record_file.empty()) {
-    if (run.spec.record_topics.empty()) run.spec.record_topics = {"/rules/*", "/*/player/state", "/*/truth/pose"};
+    if (run.spec.record_topics.empty())
+      run.spec.record_topics = {"/rules/*", "/*/player/state", "/*/truth/pose"};
     if (run.spec.record_compression.empty()) run.spec.record_compression = "zstd";
   }
 

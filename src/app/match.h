@@ -30,9 +30,9 @@ struct MatchResult {
   std::array<std::string, 2> folders, names;
   std::array<int, 2> goals{};
   std::array<int, 2> penalty_kicks{};  ///< goals of the shoot-out; they decide a draw
-  std::string winner;     ///< "": a draw
-  std::string walk_over;  ///< why a team lost by rule; "": it was played
-  bool ended = false;     ///< by the referee
+  std::string winner;                  ///< "": a draw
+  std::string walk_over;               ///< why a team lost by rule; "": it was played
+  bool ended = false;                  ///< by the referee
   bool swapped = false;
   std::uint64_t seed = 0;
   double sim_s = 0, wall_s = 0;
@@ -43,8 +43,9 @@ struct MatchResult {
     visit(Field{"folders", "", "Folders of the teams."}, s.folders);
     visit(Field{"names", "", "Names of the teams' software."}, s.names);
     visit(Field{"goals", "1", "Number of goals that count for each team."}, s.goals);
-    visit(Field{"penalty_kicks", "1", "Number of goals of each team in the penalty kicks that decide a draw."},
-          s.penalty_kicks);
+    visit(
+        Field{"penalty_kicks", "1", "Number of goals of each team in the penalty kicks that decide a draw."},
+        s.penalty_kicks);
     visit(Field{"winner", "", "Name of the team that has won; empty for a draw."}, s.winner);
     visit(Field{"walk_over", "", "Reason why a team has lost by rule; empty for none."}, s.walk_over);
     visit(Field{"ended", "", "Whether the referee has ended the game."}, s.ended);

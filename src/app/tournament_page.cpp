@@ -51,9 +51,7 @@ std::string strengths_svg(const std::vector<TableRow>& table) {
   return out + "</svg>\n";
 }
 
-std::string result_text(const GameRow& game) {
-  return game.played ? tournament::score_text(game) : "-";
-}
+std::string result_text(const GameRow& game) { return game.played ? tournament::score_text(game) : "-"; }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -67,14 +65,15 @@ void add_games(ReportPage& page, const TournamentSummary& summary) {
   for (const GameRow& game : summary.games) {
     recorded = recorded || !game.recording.empty();
     const std::string end = !game.played ? "not played: " : game.walk_over ? "walk-over: " : "";
-    rows.push_back({{fmt::format("{}{}", game.round, game.replay ? ", replay" : "")},
-                    {game.left},
-                    {result_text(game), game.recording.empty() ? "" : link_to(game_page_file(game.recording))},
-                    {game.right},
-                    {std::to_string(game.seed)},
-                    {end + game.reason},
-                    {game.played ? hash_text(game.state_hash.value) : ""},
-                    {file_name(game.recording), link_to(game.recording)}});
+    rows.push_back(
+        {{fmt::format("{}{}", game.round, game.replay ? ", replay" : "")},
+         {game.left},
+         {result_text(game), game.recording.empty() ? "" : link_to(game_page_file(game.recording))},
+         {game.right},
+         {std::to_string(game.seed)},
+         {end + game.reason},
+         {game.played ? hash_text(game.state_hash.value) : ""},
+         {file_name(game.recording), link_to(game.recording)}});
   }
   page.paragraph(
       "The team on the left began at negative x. The hash is that of the state at the end: the same game "

@@ -72,7 +72,8 @@ class Outputs {
   /// A probable mistake of the robot's description that the program can live with; `sandlot check` reports it.
   struct Remark {
     std::string what, fix;
-    std::string rule;  ///< kind of a rule: without one of it in the world the remark does not hold; "": always
+    std::string
+        rule;  ///< kind of a rule: without one of it in the world the remark does not hold; "": always
   };
   void remark(Remark remark) { remarks_.push_back(std::move(remark)); }
   std::span<const Remark> remarks() const { return remarks_; }

@@ -68,7 +68,8 @@ Status SoccerPlayer::find_devices(const Description& robot, Outputs& out) {
     out.remark({"the player has no device '" + spec.eye + "' to see the ball with",
                 "give the robot an omni_camera '" + spec.eye + "', or name another one by the key eye", ""});
   if (!referee_ && !words_)
-    out.remark({"the player has no device '" + spec.referee + "': it does not hear the referee, and plays on while the game is stopped",
+    out.remark({"the player has no device '" + spec.referee +
+                    "': it does not hear the referee, and plays on while the game is stopped",
                 "give the robot '" + spec.referee + ": {kind: referee_link}'", "referee"});
   if (image_) X_BE_ = robot.pose(*image_);
   if (objects_) X_BE_ = robot.pose(*objects_);

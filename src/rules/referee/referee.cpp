@@ -228,7 +228,8 @@ struct Referee {
     publish(context, actions);
     // One decision and one word are published in a tick: the run ends with the last one.
     const bool ends = output.ended || had_more;
-    if (ends && state.game.stage == soccer::Stage::ended && state.decisions.empty() && state.words.empty() && spec.stop_run)
+    if (ends && state.game.stage == soccer::Stage::ended && state.decisions.empty() && state.words.empty() &&
+        spec.stop_run)
       actions.stop("the game has ended: " + result_text());
   }
 
@@ -238,7 +239,8 @@ struct Referee {
     };
     const soccer::TeamRecord &a = state.game.teams[0], &b = state.game.teams[1];
     std::string text = line(state.game.score[0], state.game.score[1]);
-    if (a.shots + b.shots > 0) text += ", penalty kicks " + std::to_string(a.shots_in) + " : " + std::to_string(b.shots_in);
+    if (a.shots + b.shots > 0)
+      text += ", penalty kicks " + std::to_string(a.shots_in) + " : " + std::to_string(b.shots_in);
     return text;
   }
 

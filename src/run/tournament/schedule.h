@@ -60,7 +60,8 @@ struct Game {
 struct ScoredGame {
   Game game;
   std::array<int, 2> goals;
-  int penalty_kicks = 0;  ///< after a draw: goals of the first team minus those of the second one. A draw all the same, but in a knockout
+  int penalty_kicks =
+      0;  ///< after a draw: goals of the first team minus those of the second one. A draw all the same, but in a knockout
 };
 
 /// Games to be played next, which do not depend on each other; empty: the tournament has ended.
