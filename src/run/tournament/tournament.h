@@ -97,7 +97,8 @@ struct GameRow {
     visit(Field{"stored", "", "Whether the result was taken from the store of results."}, s.stored);
     visit(Field{"penalties_left", "1", "Goals of the team on the left in the penalty kicks after a draw."},
           s.penalties_left);
-    visit(Field{"penalties_right", "1", "Those of the other team."}, s.penalties_right);
+    visit(Field{"penalties_right", "1", "Goals of the team on the right in the penalty kicks after a draw."},
+          s.penalties_right);
   }
 };
 
