@@ -40,6 +40,23 @@ struct Mimic {
   }
 };
 
+/// Limits that a motor keeps before the joint's own ones end the motion, as the safety controller of ROS:
+///   speed within [-k_position (x - soft_lower), -k_position (x - soft_upper)] and the largest speed,
+///   effort within [-k_velocity (v - lowest speed), -k_velocity (v - highest speed)] and the largest effort.
+/// A gain of 0 leaves its line out.
+struct SafetyLimits {
+  double soft_lower = -1e16, soft_upper = 1e16;
+  double k_position = 0, k_velocity = 0;
+
+  static void fields(auto& s, auto&& visit) {
+    visit(Field{"soft_lower", "rad", "Position below which motors do not turn the joint."}, s.soft_lower);
+    visit(Field{"soft_upper", "rad", "Position above which motors do not turn the joint."}, s.soft_upper);
+    visit(Field{"k_position", "1/s", "Speed that is allowed per distance from a soft limit."}, s.k_position);
+    visit(Field{"k_velocity", "Nm s/rad", "Torque that is allowed per distance from a limit of the speed."},
+          s.k_velocity);
+  }
+};
+
 /// The second axis of a universal joint. It is passive: it can be limited and damped, not driven or read.
 struct SecondAxis {
   Vec3 axis_J{0, 1, 0};  ///< unit, in J, across the first
@@ -72,6 +89,7 @@ struct Joint {
   double thread_pitch_m = 0;
   std::optional<SecondAxis> second;  ///< of universal joints only
   std::optional<Mimic> mimic;
+  std::optional<SafetyLimits> safety;
   std::optional<RollerWheel> rollers;  ///< about axis_J
   std::uint32_t roller_of = no_joint;  ///< of a roller: the joint of its wheel
   Place place;
@@ -96,6 +114,7 @@ struct Joint {
           s.thread_pitch_m);
     visit(Field{"second", "", "Second axis of a universal joint."}, s.second);
     visit(Field{"mimic", "", "Coupling to another joint."}, s.mimic);
+    visit(Field{"safety", "", "Limits that motors keep before the joint ends the motion."}, s.safety);
     visit(Field{"rollers", "", "Rollers of the wheel that the child is."}, s.rollers);
     visit(Field{"roller_of", "", "Index of the wheel's joint, of the joint of a roller."}, s.roller_of);
   }

@@ -115,7 +115,8 @@ std::string turtle() {
   <link name="head">)" +
          small + R"(</link>
   <joint name="tilt" type="revolute"><origin xyz="0 0 0.04"/><parent link="head"/><child link="eye"/>
-    <axis xyz="0 1 0"/><limit lower="-0.5" upper="0.5" effort="1" velocity="2"/><mimic joint="pan" multiplier="0.5" offset="0.1"/></joint>
+    <axis xyz="0 1 0"/><limit lower="-0.5" upper="0.5" effort="1" velocity="2"/><mimic joint="pan" multiplier="0.5" offset="0.1"/>
+    <safety_controller soft_lower_limit="-0.4" soft_upper_limit="0.3" k_position="5" k_velocity="2"/></joint>
   <link name="eye">)" +
          small + R"(</link>
   <gazebo reference="ball"><mu1>0</mu1><mu2>0</mu2></gazebo>

@@ -150,4 +150,25 @@ Status read_joint_motion(const Xml& element, model::Joint& out, const Reading& i
   return {};
 }
 
+Status read_safety(const Xml& joint, model::Joint& out, const Reading& in) {
+  const Xml* const safety = joint.child("sandlot:safety");
+  if (!safety) return {};
+  using Type = model::JointType;
+  if (out.type != Type::revolute && out.type != Type::continuous && out.type != Type::prismatic)
+    return safety->error("joint '" + out.name + "' has no motion that a safety controller could limit",
+                         "revolute, continuous and prismatic joints have one");
+  in.notes.unused(*safety, "soft_lower soft_upper k_position k_velocity");
+  model::SafetyLimits limits;
+  SL_TRY(read_child(*safety, "soft_lower", bound_range, limits.soft_lower));
+  SL_TRY(read_child(*safety, "soft_upper", bound_range, limits.soft_upper));
+  SL_TRY(read_child(*safety, "k_position", not_negative, limits.k_position));
+  SL_TRY(read_child(*safety, "k_velocity", not_negative, limits.k_velocity));
+  if (limits.k_position > 0 && limits.soft_lower > limits.soft_upper)
+    return safety->error("the soft limits of joint '" + out.name + "', " + number_text(limits.soft_lower) +
+                             " and " + number_text(limits.soft_upper) + ", leave no room",
+                         "the lower one must be below the upper one");
+  out.safety = limits;
+  return {};
+}
+
 }  // namespace sandlot::formats

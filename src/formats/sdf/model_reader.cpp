@@ -194,6 +194,7 @@ class ModelReader {
       return {};
     }
     SL_TRY(read_joint_motion(element, joint, in_));
+    SL_TRY(read_safety(element, joint, in_));
     SL_TRY(read_rollers(element, joint, in_));
     const auto end = [&](const char* key, const std::unordered_map<const Xml*, std::string>& resolved) {
       const auto found = resolved.find(&element);

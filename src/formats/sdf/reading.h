@@ -40,6 +40,8 @@ Result<model::Material> read_material(const Xml& visual, const Reading& in);
 
 /// Type, axes, limits and dynamics of a joint.
 Status read_joint_motion(const Xml& element, model::Joint& out, const Reading& in);
+/// <sandlot:safety> of a joint, if there: limits that its motors keep.
+Status read_safety(const Xml& joint, model::Joint& out, const Reading& in);
 /// <sandlot:rollers> of a joint, if there: its child is a wheel with rollers.
 Status read_rollers(const Xml& joint, model::Joint& out, const Reading& in);
 /// A gearbox couples the turns of two links, which no joint of ours does.

@@ -305,6 +305,20 @@ Status add_axis(const Robot& robot, const Xml& joint, const std::string& type, X
       if (dynamics->attribute(key)) add(sdf, key, *dynamics, std::move(value));
     }
   }
+  if (const Xml* const safety = joint.child("safety_controller")) {
+    unused_attributes(*safety, "soft_lower_limit soft_upper_limit k_position k_velocity", notes);
+    SL_TRY(required(*safety, "k_velocity", "10"));
+    Xml& sdf = add(out, "sandlot:safety", *safety);
+    for (const auto& [key, ours] : {std::pair{"soft_lower_limit", "soft_lower"},
+                                    {"soft_upper_limit", "soft_upper"},
+                                    {"k_position", "k_position"},
+                                    {"k_velocity", "k_velocity"}}) {
+      SL_ASSIGN(std::string value, numbers(*safety, key, 1, "0"));
+      const bool limit = key[0] == 's';
+      if (limit && type == "continuous" && !safety->attribute(key)) continue;
+      add(sdf, ours, *safety, std::move(value));
+    }
+  }
   if (const Xml* const mimic = joint.child("mimic")) {
     unused_attributes(*mimic, "joint multiplier offset", notes);
     SL_ASSIGN(const std::string leader, required(*mimic, "joint", "..."));
@@ -329,7 +343,7 @@ Status add_axis(const Robot& robot, const Xml& joint, const std::string& type, X
 /// @return the index of the joint's element in `model`, or `nothing` for a floating one
 Result<std::size_t> add_joint(const Robot& robot, std::size_t j, Xml& model, Notes& notes) {
   const Xml& joint = *robot.joints[j];
-  notes.unused(joint, "origin parent child axis limit dynamics mimic", "safety_controller calibration");
+  notes.unused(joint, "origin parent child axis limit dynamics mimic safety_controller", "calibration");
   unused_attributes(joint, "name type", notes);
   SL_ASSIGN(const std::string type, required(joint, "type", "revolute"));
   if (type == "floating") return nothing;

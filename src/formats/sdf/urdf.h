@@ -16,7 +16,7 @@
 ///          `__`, each with a warning; plugins that name the joint follow.
 /// Errors   no root or several, circles, links with two parents, joints to nowhere, missing limits, xacro, numbers that
 ///          are none: one error with its line. Values out of range are found by the SDF reader, with the same line.
-/// Ignored  safety_controller and calibration silently; anything unknown with one warning.
+/// Ignored  calibration silently; anything unknown with one warning.
 #include "files/xml.h"
 #include "formats/sdf/values.h"
 

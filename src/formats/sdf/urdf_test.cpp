@@ -57,15 +57,17 @@ bool mentions(const std::vector<std::string>& warnings, const std::string& words
 TEST(Urdf, PlacesAChainAsWorkedOutByHand) {
   // b: 1 ahead of a, turned left by 90 degrees. c: 2 ahead of b, which is 2 to the left in a, and rolled by 90 degrees.
   // d: 3 along c's y. c's y axis: Rz(90) Rx(90) ey = Rz(90) ez = ez. So d is at (1, 2, 3).
-  const Read r = parse(robot(link("a") + link("b") + link("c") + link("d") +
-                             joint("ab", "continuous", "a", "b",
-                                   "<origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/><axis xyz='0 0 2'/>") +
-                             joint("bc", "prismatic", "b", "c",
-                                   "<origin rpy='1.5707963267948966 0 0' xyz='2 0 0'/>"
-                                   "<limit lower='-0.5' upper='1.5' effort='3' velocity='4'/>"
-                                   "<dynamics damping='0.25' friction='0.5'/>"
-                                   "<safety_controller k_velocity='1'/><calibration rising='0'/>") +
-                             joint("cd", "fixed", "c", "d", "<origin xyz='0 3 0'/>")));
+  const Read r = parse(robot(
+      link("a") + link("b") + link("c") + link("d") +
+      joint("ab", "continuous", "a", "b",
+            "<origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/><axis xyz='0 0 2'/>") +
+      joint("bc", "prismatic", "b", "c",
+            "<origin rpy='1.5707963267948966 0 0' xyz='2 0 0'/>"
+            "<limit lower='-0.5' upper='1.5' effort='3' velocity='4'/>"
+            "<dynamics damping='0.25' friction='0.5'/>"
+            "<safety_controller soft_lower_limit='-0.25' soft_upper_limit='1' k_position='8' k_velocity='6'/>"
+            "<calibration rising='0'/>") +
+      joint("cd", "fixed", "c", "d", "<origin xyz='0 3 0'/>")));
   ASSERT_TRUE(r.model) << r.error;
   EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
   const model::Model& m = *r.model;
@@ -87,8 +89,34 @@ TEST(Urdf, PlacesAChainAsWorkedOutByHand) {
   EXPECT_EQ(m.joints[1].max_velocity, 4);
   EXPECT_EQ(m.joints[1].damping, 0.25);
   EXPECT_EQ(m.joints[1].friction, 0.5);
+  ASSERT_TRUE(m.joints[1].safety);
+  EXPECT_EQ(m.joints[1].safety->soft_lower, -0.25);
+  EXPECT_EQ(m.joints[1].safety->soft_upper, 1);
+  EXPECT_EQ(m.joints[1].safety->k_position, 8);
+  EXPECT_EQ(m.joints[1].safety->k_velocity, 6);
+  EXPECT_FALSE(m.joints[0].safety);
   EXPECT_EQ(m.joints[2].type, model::JointType::fixed);
   EXPECT_EQ(m.joints[1].place.line, 2);
+}
+
+TEST(Urdf, SafetyLimitsAreWholeOrRefused) {
+  const auto with = [](const char* type, const char* safety) {
+    return parse(robot(link("a") + link("b") +
+                       joint("j", type, "a", "b",
+                             std::string("<limit lower='-1' upper='1' effort='3' velocity='4'/>") + safety)));
+  };
+  const Read turns = with("continuous", "<safety_controller k_velocity='10'/>");
+  ASSERT_TRUE(turns.model) << turns.error;
+  EXPECT_EQ(turns.model->joints[0].safety->soft_upper, 1e16) << "a continuous joint has no end";
+  EXPECT_EQ(turns.model->joints[0].safety->k_velocity, 10);
+  const auto refused = [&](const char* safety, const char* words) {
+    const std::string error = with("revolute", safety).error;
+    EXPECT_NE(error.find(words), std::string::npos) << error;
+  };
+  refused("<safety_controller k_position='1'/>", "has no k_velocity");
+  refused("<safety_controller soft_lower_limit='1' soft_upper_limit='0' k_position='1' k_velocity='1'/>",
+          "leave no room");
+  refused("<safety_controller k_position='-1' k_velocity='1'/>", "k_position");
 }
 
 TEST(Urdf, TheRootIsTheCanonicalLinkWhereverItStands) {

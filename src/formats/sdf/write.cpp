@@ -221,6 +221,7 @@ class ModelWriter {
       add_number(dynamics, "damping", joint.second->damping);
       add_number(dynamics, "friction", joint.second->friction);
     }
+    if (joint.safety) add(out, safety_of(*joint.safety));
     if (joint.rollers) add(out, rollers_of(*joint.rollers));
     for (const model::DeviceDecl& device : devices_)
       if (!is_native(device) && is_sensor(device) && writing::joint_of(device) == joint.name)

@@ -164,6 +164,15 @@ std::optional<Xml> surface_of(const model::Surface& s) {
   return out;
 }
 
+Xml safety_of(const model::SafetyLimits& limits) {
+  Xml out = element("sandlot:safety");
+  if (limits.soft_lower != -unlimited) add_number(out, "soft_lower", limits.soft_lower);
+  if (limits.soft_upper != unlimited) add_number(out, "soft_upper", limits.soft_upper);
+  add_number(out, "k_position", limits.k_position);
+  add_number(out, "k_velocity", limits.k_velocity);
+  return out;
+}
+
 Xml rollers_of(const model::RollerWheel& w) {
   Xml out = element("sandlot:rollers");
   add_number(out, "radius", w.radius_m);

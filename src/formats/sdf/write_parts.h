@@ -28,6 +28,8 @@ std::optional<Xml> surface_of(const model::Surface& surface);
 Xml geometry_of(const Shape& shape, const std::string& owner, const Place& place, Diagnostics& diagnostics);
 std::optional<Xml> material_of(const model::Material& material);
 Xml light_of(const model::Light& light);
+/// Limits of infinity are left out.
+Xml safety_of(const model::SafetyLimits& limits);
 Xml rollers_of(const model::RollerWheel& wheel);
 Xml inertial_of(const model::Inertial& inertial);
 

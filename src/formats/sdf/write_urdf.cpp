@@ -252,6 +252,15 @@ class UrdfWriter {
       dynamics.set_attribute("damping", number_text(joint.damping));
       dynamics.set_attribute("friction", number_text(joint.friction));
     }
+    if (joint.safety) {
+      Xml& safety = add(out, "safety_controller");
+      if (joint.safety->soft_lower != -unlimited)
+        safety.set_attribute("soft_lower_limit", number_text(joint.safety->soft_lower));
+      if (joint.safety->soft_upper != unlimited)
+        safety.set_attribute("soft_upper_limit", number_text(joint.safety->soft_upper));
+      safety.set_attribute("k_position", number_text(joint.safety->k_position));
+      safety.set_attribute("k_velocity", number_text(joint.safety->k_velocity));
+    }
     if (joint.mimic) {
       Xml& mimic = add(out, "mimic");
       mimic.set_attribute("joint", plain(m_.joints[joint.mimic->joint].name));

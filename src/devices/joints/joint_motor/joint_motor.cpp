@@ -62,17 +62,30 @@ void start_or_stop(Motor& motor, Level level, const JointState& joint, std::vect
   }
 }
 
+double cut(double x, std::array<double, 2> range) { return std::clamp(x, range[0], range[1]); }
+
+/// Effort that the joint's safety limits allow at its speed of now.
+double safe_effort(const Motor& motor, const JointState& joint, double wanted) {
+  if (!motor.safety || motor.safety->k_velocity == 0) return wanted;
+  const auto [lowest, highest] = motor.speeds_at(joint.position);
+  const double limit = motor.effort_limit(), k = motor.safety->k_velocity;
+  const double down = std::clamp(-k * (joint.velocity - lowest), -limit, limit);
+  const double up = std::clamp(-k * (joint.velocity - highest), -limit, limit);
+  return std::clamp(wanted, down, up);
+}
+
 /// Speed that the engine itself shall hold, for servo `exact`.
 JointTarget exact_target(Motor& motor, Level level, const JointState& joint, double h_s) {
   State& state = motor.state;
   const double fastest = motor.velocity_limit();
+  const std::array<double, 2> speeds = motor.speeds_at(joint.position);
   double speed = 0;
   if (level == velocity) {
-    speed = state.reference = std::clamp(state.command, -fastest, fastest);
+    speed = state.reference = cut(state.command, speeds);
   } else {
     state.reference = towards(state.reference, std::clamp(state.command, motor.lower, motor.upper),
                               fastest * h_s);
-    speed = std::clamp(0.2 * (state.reference - joint.position) / h_s, -fastest, fastest);
+    speed = cut(0.2 * (state.reference - joint.position) / h_s, speeds);
   }
   return {.joint = motor.joint,
           .mode = JointTarget::Mode::velocity,
@@ -85,7 +98,7 @@ double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
   const double limit = motor.effort_limit(), fastest = motor.velocity_limit();
   switch (level) {
     case velocity: {
-      state.reference = std::clamp(state.command, -fastest, fastest);
+      state.reference = cut(state.command, motor.speeds_at(joint.position));
       const double rate = (joint.velocity - state.previous_velocity) / h_s;
       state.previous_velocity = joint.velocity;
       return state.pid.step(motor.spec.velocity, state.reference - joint.velocity, rate, limit, h_s);
@@ -102,6 +115,15 @@ double servo(Motor& motor, Level level, const JointState& joint, double h_s) {
 }
 
 }  // namespace
+
+std::array<double, 2> Motor::speeds_at(double position) const {
+  const double fastest = velocity_limit();
+  if (!safety || safety->k_position == 0) return {-fastest, fastest};
+  const auto allowed = [&](double limit) {
+    return std::clamp(-safety->k_position * (position - limit), -fastest, fastest);
+  };
+  return {allowed(safety->soft_lower), allowed(safety->soft_upper)};
+}
 
 double Motor::in_units(Level level, double given) const {
   if (spec.commands == Commands::si) return given;
@@ -148,6 +170,11 @@ Result<Motor> Motor::create(const DeviceBuild& build, Spec spec) {
   const bool bounded = joint.type != JointType::continuous;
   motor.lower = bounded ? joint.lower : -1e16;
   motor.upper = bounded ? joint.upper : 1e16;
+  motor.safety = joint.safety;
+  if (joint.safety && joint.safety->k_position > 0) {
+    motor.lower = std::max(motor.lower, joint.safety->soft_lower);
+    motor.upper = std::max(motor.lower, std::min(motor.upper, joint.safety->soft_upper));
+  }
   motor.joint_effort = joint.max_effort;
   motor.joint_velocity = joint.max_velocity;
   SL_TRY(motor.check_scale(build.levels));
@@ -186,7 +213,7 @@ void Motor::pre_substep(PoolView<Motor> pool, const Context& context, double h_s
       context.actuation.joints.push_back(exact_target(motor, level, joint, h_s));
       continue;
     }
-    const double effort_wanted = servo(motor, level, joint, h_s);
+    const double effort_wanted = safe_effort(motor, joint, servo(motor, level, joint, h_s));
     context.actuation.joints.push_back(
         {.joint = motor.joint, .mode = JointTarget::Mode::effort, .effort = effort_wanted});
   }

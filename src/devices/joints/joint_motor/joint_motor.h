@@ -8,6 +8,8 @@
 ///          level position that speed closes a fifth of the error in each sub-step. The reference moves
 ///          towards the command at no more than max_velocity; position commands are cut to the joint's
 ///          limits, efforts to the smaller of max_effort and the joint's own.
+/// Safety   where the joint has safety limits (model/joint.h), position commands are cut to its soft limits, speeds to
+///          those that its position allows, and with gains efforts to those that its speed allows.
 /// Scale    `commands: si` (the default) takes rad, m, rad/s, Nm ... `share` takes -1 to 1 of the limit on
 ///          that side (0 stays 0; LpzRobots' OneAxisServo), `centred` of the way from the middle between the
 ///          joint's limits to them; of speeds and efforts both are shares of max_velocity and max_effort.
@@ -115,6 +117,7 @@ struct Motor {
   EnergyMeter* energy = nullptr;
   double lower = 0, upper = 0;  ///< of the joint
   double joint_effort = 0, joint_velocity = 0;
+  std::optional<model::SafetyLimits> safety;  ///< of the joint
   std::array<Topic<msg::Float64>*, 3> command{};
 
   static Result<Motor> create(const DeviceBuild& build, Spec spec);
@@ -129,6 +132,8 @@ struct Motor {
   Status check_scale(std::uint32_t levels) const;
   double effort_limit() const { return std::min(spec.max_effort, joint_effort); }
   double velocity_limit() const { return std::min(spec.max_velocity, joint_velocity); }
+  /// Lowest and highest speed that the limits and the joint's position allow.
+  std::array<double, 2> speeds_at(double position) const;
 };
 
 /// Gazebo's JointController, JointPositionController and ApplyJointForce as keys of the spec.

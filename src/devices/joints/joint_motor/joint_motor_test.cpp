@@ -119,6 +119,62 @@ TEST(JointMotor, LimitsHold) {
   EXPECT_FALSE(rig.pool->set_parameter(0, "position/p", Node::scalar("-5")));
 }
 
+/// Joint 0 with soft limits of -8 and 0.5 rad: its speed may be 4 (0.5 - x) towards the upper one, its torque 10 (highest - v).
+model::Model with_soft_limits() {
+  model::Model model = test::two_wheels();
+  model.joints[0].max_velocity = 2;
+  model.joints[0].safety = model::SafetyLimits{
+      .soft_lower = -8, .soft_upper = 0.5, .k_position = 4, .k_velocity = 10};
+  return model;
+}
+
+TEST(JointMotor, AnEffortIsHeldBackByTheSafetyLimits) {
+  // 5 Nm against a damping of 1 Nm s/rad would give 5 rad/s. Far from the limit 10 (2 - v) = v holds at v = 20/11; near it
+  // x'' = -10 (v - 4 (0.5 - x)) - v comes to rest at 0.5 exactly, w = sqrt(40) and damping 11 / (2 w) = 0.87: beyond it by less
+  // than exp(-pi 0.87 / sqrt(1 - 0.87^2)) = 0.4 % of what is left when it begins to brake.
+  Rig rig(kind, with_soft_limits(), 0.001);
+  ASSERT_TRUE(rig.add("motor", config({{"joint", "left"}}), effort_bit));
+  rig.engine->joint[0].position = -6;
+  rig.command("motor/effort", msg::Float64{5});
+  double highest = -6;
+  for (int k = 0; k < 8000; ++k) {
+    rig.engine->outside[0] = -rig.engine->joint[0].velocity;
+    rig.act();
+    highest = std::max(highest, rig.engine->joint[0].position);
+    if (k == 1500) { EXPECT_NEAR(rig.engine->joint[0].velocity, 20.0 / 11, 0.01); }
+  }
+  EXPECT_NEAR(rig.engine->joint[0].position, 0.5, 1e-6);
+  EXPECT_LT(highest, 0.505);
+  rig.command("motor/effort", msg::Float64{-5});
+  for (int k = 0; k < 8000; ++k) {
+    rig.engine->outside[0] = -rig.engine->joint[0].velocity;
+    rig.act();
+  }
+  EXPECT_NEAR(rig.engine->joint[0].position, -8, 1e-6) << "and at the other end";
+}
+
+TEST(JointMotor, SpeedsAndPositionsAreCutToTheSafetyLimits) {
+  // An exact servo has the speed that its position allows: x' = 4 (0.5 - x) below 0 rad, so e^-4t from there on.
+  Rig rig(kind, with_soft_limits(), 0.001);
+  Node exact = config({{"joint", "left"}, {"servo", "exact"}});
+  ASSERT_TRUE(rig.add("motor", std::move(exact), velocity_bit));
+  rig.command("motor/velocity", msg::Float64{100});
+  for (int k = 0; k < 1000; ++k) {
+    rig.act();
+    EXPECT_LE(rig.engine->joint[0].velocity, std::min(2.0, 4 * (0.5 - rig.engine->joint[0].position)) + 0.01);
+  }
+  EXPECT_NEAR(rig.engine->joint[0].position, 0.5 - 0.5 * math::exp(-4.0), 1e-4);
+
+  Rig angle(kind, with_soft_limits(), 0.001);
+  Node servo = config({{"joint", "left"}, {"servo", "exact"}});
+  ASSERT_TRUE(angle.add("motor", std::move(servo), position_bit));
+  angle.command("motor/position", msg::Float64{0.9});
+  for (int k = 0; k < 1000; ++k) angle.act();
+  EXPECT_NEAR(angle.engine->joint[0].position, 0.5 - 0.5 * math::exp(-4.0), 1e-3) << "with the same speeds";
+  for (int k = 0; k < 4000; ++k) angle.act();
+  EXPECT_NEAR(angle.engine->joint[0].position, 0.5, 1e-6) << "the command is cut to the soft limit";
+}
+
 TEST(JointMotor, PositionsStayWithinTheJointsRange) {
   Rig rig(kind, test::two_wheels(), 0.001);
   ASSERT_TRUE(rig.add("motor", gains("position", {{"p", "100"}, {"d", "20"}}, "lift"), position_bit));
