@@ -3,8 +3,14 @@
 ///
 /// Requests take effect at the beginning of the next tick, in an order that does not depend on who connected first
 /// (Commands::take()), and are logged: the log plus the seed is the replay.
+///
+/// An alternative is a struct with
+///   kind       its name for people
+///   members()  what a log holds of it, in the order of the bytes; the first one is its target, unless it has target()
+///   fits()     only where a log may hold what must not be: false refuses it
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -34,81 +40,112 @@ struct Source {
 
 /// A message for a device: `target` is "robot1/drive" (its active level) or "robot1/drive/ideal".
 struct CommandRequest {
+  static constexpr const char* kind = "command";
   std::string target;
   std::string type;              ///< ROS type
   std::vector<std::byte> bytes;  ///< the message, as base/bytes.h writes it
+  static auto members(auto& x) { return std::tie(x.target, x.type, x.bytes); }
 };
 /// A tunable field: "robot1/laser.noise/white" or "robot1/wander.speed".
 struct ParameterRequest {
+  static constexpr const char* kind = "parameter";
   std::string target;
   std::string field;
   Node value;
+  static auto members(auto& x) { return std::tie(x.target, x.field, x.value); }
 };
 /// Which levels of a device are active from now on.
 struct LevelRequest {
+  static constexpr const char* kind = "level";
   std::string device;
   std::vector<std::string> levels;
+  static auto members(auto& x) { return std::tie(x.device, x.levels); }
 };
 struct SpawnRequest {
+  static constexpr const char* kind = "spawn";
   model::Instance instance;
+  static auto members(auto& x) { return std::tie(x.instance); }
+  const std::string& target() const { return instance.name; }
 };
 struct DeleteRequest {
+  static constexpr const char* kind = "delete";
   std::string name;
+  static auto members(auto& x) { return std::tie(x.name); }
 };
 struct PoseRequest {
+  static constexpr const char* kind = "pose";
   std::string name;
   Pose X_WM;
+  static auto members(auto& x) { return std::tie(x.name, x.X_WM); }
 };
 /// A new device for a robot that is there. Its programs go on as they are; those that look devices up find it.
 struct LoadDeviceRequest {
+  static constexpr const char* kind = "load device";
   std::string robot;
   model::DeviceDecl device;
+  static auto members(auto& x) { return std::tie(x.robot, x.device); }
 };
 /// Takes a device from its robot; what it held is released. Refused while a program of the robot needs it.
 struct UnloadDeviceRequest {
+  static constexpr const char* kind = "unload device";
   std::string device;
+  static auto members(auto& x) { return std::tie(x.device); }
 };
 /// Pulls at an instance with a spring for a while (sim/world/pull.h); `hold` 0 lets go.
 struct PullRequest {
+  static constexpr const char* kind = "pull";
   std::string name;
   std::string link;        ///< "": the first
   Vec3 point_L, target_W;  ///< [m]
   Time hold = Time::from_s(0.25);
+  static auto members(auto& x) { return std::tie(x.name, x.link, x.point_L, x.target_W, x.hold); }
 };
 /// Take a sample at the end of the next tick although none is due.
 struct SampleRequest {
+  static constexpr const char* kind = "sample";
   std::string device;
+  static auto members(auto& x) { return std::tie(x.device); }
 };
 
 /// What came from outside for a program that waits for it, or that nothing came in time.
 struct AnswerRequest {
+  static constexpr const char* kind = "answer";
   std::string program;
   OutsideAnswer answer;
+  static auto members(auto& x) { return std::tie(x.program, x.answer.kind, x.answer.bytes); }
+  bool fits() const { return answer.kind <= OutsideAnswer::Kind::gone; }
 };
 
 /// Calls a service of a device (devices/device_service.h).
 struct CallRequest {
+  static constexpr const char* kind = "call";
   std::string device;            ///< "rover/odometry"
   std::string service;           ///< "reset"
   std::vector<std::byte> bytes;  ///< the service's request, in CDR
+  static auto members(auto& x) { return std::tie(x.device, x.service, x.bytes); }
 };
 
 /// Sets the velocity of an instance as a whole (Engine::set_velocity).
 struct VelocityRequest {
+  static constexpr const char* kind = "velocity";
   std::string name;
   Velocity V_WM;  ///< of the model's origin
+  static auto members(auto& x) { return std::tie(x.name, x.V_WM); }
 };
 /// Replaces category, description and tags of an entity.
 struct InfoRequest {
+  static constexpr const char* kind = "info";
   std::string name;
   model::EntityInfo info;
+  static auto members(auto& x) { return std::tie(x.name, x.info.category, x.info.description, x.info.tags); }
+  bool fits() const { return info.category <= model::Category::static_object; }
 };
 
 using Request = std::variant<CommandRequest, ParameterRequest, LevelRequest, SpawnRequest, DeleteRequest,
                              PoseRequest, SampleRequest, LoadDeviceRequest, UnloadDeviceRequest, PullRequest,
                              AnswerRequest, CallRequest, VelocityRequest, InfoRequest>;
 
-/// "command", "parameter", ...: of the alternatives of Request in their order.
+/// Name of an alternative of Request, by its place in the list: "command", "parameter", ...
 const char* request_kind(std::size_t index);
 /// The target of a request: "rover/drive".
 const std::string& request_target(const Request& request);
