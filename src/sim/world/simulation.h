@@ -253,8 +253,7 @@ class Simulation final : public SimulationParts, public TopicFinder {
   void for_each_state(Visit&& visit) const;
   std::uint64_t hash_parts(std::vector<std::uint64_t>& parts) const;
   std::shared_ptr<const std::vector<std::string>> name_parts() const;
-  bool errors_scaled() const;
-  void save_errors(ByteWriter& w) const;
+  struct RunBlock;
   void save_run(ByteWriter& w) const;
   bool load_run(ByteReader& r);
 

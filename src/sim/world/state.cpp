@@ -91,48 +91,99 @@ Result<SnapshotInfo> examine_snapshot(std::span<const std::byte> bytes) {
   return info;
 }
 
+/// A part of the run's own State that most runs do not have. Its block is there where it, or one behind it in the list, is not
+/// empty: the bytes of a run that nobody touches are those of before there were any.
+struct Simulation::RunBlock {
+  bool (*any)(const Simulation&);
+  void (*save)(const Simulation&, ByteWriter&);
+  /// False: the bytes are not such State.
+  bool (*load)(Simulation&, ByteReader&);
+
+  static std::span<const RunBlock> all();
+
+ private:
+  static bool load_overrides(Simulation& sim, ByteReader& r) {
+    std::vector<ManualOverride> overrides;
+    read(r, overrides);
+    if (!r.ok() || r.remaining() != 0) return false;
+    sim.commands_.restore(std::move(overrides));
+    return true;
+  }
+
+  static bool any_errors(const Simulation& sim) {
+    return sim.setup_.errors != 1 || std::any_of(sim.entities_.begin(), sim.entities_.end(),
+                                                 [](const auto& each) { return each->instance.errors != 1; });
+  }
+  static void save_errors(const Simulation& sim, ByteWriter& w) {
+    write(w, sim.setup_.errors);
+    for (const auto& entity : sim.entities_)
+      if (entity->instance.errors != 1) write(w, entity->serial), write(w, entity->instance.errors);
+  }
+
+  static void save_failures(const Simulation& sim, ByteWriter& w) {
+    for (const auto& entity : sim.entities_)
+      for (const auto& device : entity->devices) {
+        if (!is_ordered(*device)) continue;
+        write(w, device->path);
+        write(w, device->faults->order.kind);
+        write(w, device->faults->order.factor);
+      }
+  }
+  static bool load_failures(Simulation& sim, ByteReader& r) {
+    while (r.ok() && r.remaining() > 0) {
+      std::string path;
+      FailureOrder order;
+      read(r, path);
+      read(r, order.kind);
+      read(r, order.factor);
+      Device* const device = r.ok() ? sim.find_device(path) : nullptr;
+      if (!device || order.kind > FailureOrder::Kind::noisy || !(order.factor >= 0 && order.factor <= 1000))
+        return false;
+      if (!sim.devices_.order_failure(*device, order)) return false;
+    }
+    return r.ok();
+  }
+
+  static bool any_loaded(const Simulation& sim) {
+    return std::any_of(sim.entities_.begin(), sim.entities_.end(),
+                       [](const auto& entity) { return !entity->loaded.empty(); });
+  }
+};
+
+/// In the order of their bytes: a new one goes to the end.
+std::span<const Simulation::RunBlock> Simulation::RunBlock::all() {
+  static constexpr RunBlock blocks[] = {
+      // Pulls.
+      {[](const Simulation& sim) { return !sim.pulls_.empty(); },
+       [](const Simulation& sim, ByteWriter& w) { sim.pulls_.save(w); },
+       [](Simulation& sim, ByteReader& r) { return sim.pulls_.load(sim.entities_, r); }},
+      // Devices that are driven from outside.
+      {[](const Simulation& sim) { return !sim.commands_.overrides().empty(); },
+       [](const Simulation& sim, ByteWriter& w) { write(w, sim.commands_.overrides()); }, load_overrides},
+      // Factors on errors: for the hash; at a restore the Model has brought them.
+      {any_errors, save_errors, [](Simulation&, ByteReader&) { return true; }},
+      // Failures that were ordered.
+      {[](const Simulation& sim) { return sim.devices_.any_failure_ordered(); }, save_failures,
+       load_failures},
+      // Controllers that came while the run went on.
+      {any_loaded, ControllerManager::save_loaded, ControllerManager::load_loaded},
+  };
+  return blocks;
+}
+
 void Simulation::save_run(ByteWriter& w) const {
   write(w, now_);
   write(w, tick_);
   write(w, revision_);
   write(w, next_serial_);
   write(w, commands_.refused());
-  write(w, std::uint64_t{
-               0});  // the block of the stop time, which is no State: empty, and there with and without one
+  write_block(w, [](ByteWriter&) {});  // of the stop time, which is not State: empty, with and without one
   monitor_->save(w);
-  // Only where there are some: the bytes of a run that nobody touches are those of before there were any.
-  const bool scaled = errors_scaled();
-  const bool ordered = devices_.any_failure_ordered();
-  const bool loaded = std::any_of(entities_.begin(), entities_.end(),
-                                  [](const auto& entity) { return !entity->loaded.empty(); });
-  const std::vector<ManualOverride>& overrides = commands_.overrides();
-  if (!pulls_.empty() || !overrides.empty() || scaled || ordered || loaded)
-    write_block(w, [&](ByteWriter& block) { pulls_.save(block); });
-  if (!overrides.empty() || scaled || ordered || loaded)
-    write_block(w, [&](ByteWriter& block) { write(block, overrides); });
-  if (scaled || ordered || loaded) write_block(w, [&](ByteWriter& block) { save_errors(block); });
-  if (!ordered && !loaded) return;
-  write_block(w, [&](ByteWriter& block) {
-    for (const auto& entity : entities_)
-      for (const auto& device : entity->devices) {
-        if (!is_ordered(*device)) continue;
-        write(block, device->path);
-        write(block, device->faults->order.kind);
-        write(block, device->faults->order.factor);
-      }
-  });
-  if (loaded) write_block(w, [&](ByteWriter& block) { ControllerManager::save_loaded(*this, block); });
-}
-
-bool Simulation::errors_scaled() const {
-  return setup_.errors != 1 || std::any_of(entities_.begin(), entities_.end(),
-                                           [](const auto& each) { return each->instance.errors != 1; });
-}
-
-void Simulation::save_errors(ByteWriter& w) const {
-  write(w, setup_.errors);
-  for (const auto& entity : entities_)
-    if (entity->instance.errors != 1) write(w, entity->serial), write(w, entity->instance.errors);
+  const std::span<const RunBlock> blocks = RunBlock::all();
+  std::size_t count = blocks.size();
+  while (count > 0 && !blocks[count - 1].any(*this)) --count;
+  for (const RunBlock& each : blocks.first(count))
+    write_block(w, [&](ByteWriter& block) { each.save(*this, block); });
 }
 
 bool Simulation::load_run(ByteReader& r) {
@@ -147,34 +198,12 @@ bool Simulation::load_run(ByteReader& r) {
   if (now_.ns < 0 || now_.ns > most_ns) return false;
   if (read_block(r).remaining() != 0) return false;
   monitor_->load(r);
-  if (!r.ok() || r.remaining() == 0) return r.ok();
-  ByteReader pulls = read_block(r);
-  if (!r.ok() || !pulls_.load(entities_, pulls)) return false;
-  if (r.remaining() == 0) return true;
-  ByteReader block = read_block(r);
-  std::vector<ManualOverride> overrides;
-  read(block, overrides);
-  if (!r.ok() || !block.ok() || block.remaining() != 0) return false;
-  commands_.restore(std::move(overrides));
-  if (r.remaining() == 0) return true;
-  read_block(r);  // factors on errors: for the hash; the Model has brought them
-  if (!r.ok() || r.remaining() == 0) return r.ok();
-  ByteReader failures = read_block(r);
-  while (failures.ok() && failures.remaining() > 0) {
-    std::string path;
-    FailureOrder order;
-    read(failures, path);
-    read(failures, order.kind);
-    read(failures, order.factor);
-    Device* const device = failures.ok() ? find_device(path) : nullptr;
-    if (!device || order.kind > FailureOrder::Kind::noisy || !(order.factor >= 0 && order.factor <= 1000))
-      return false;
-    if (!devices_.order_failure(*device, order)) return false;
+  for (const RunBlock& each : RunBlock::all()) {
+    if (!r.ok() || r.remaining() == 0) break;
+    ByteReader block = read_block(r);
+    if (!r.ok() || !each.load(*this, block)) return false;
   }
-  if (!r.ok() || !failures.ok()) return false;
-  if (r.remaining() == 0) return true;
-  ByteReader loaded = read_block(r);
-  return r.ok() && ControllerManager::load_loaded(*this, loaded);
+  return r.ok();
 }
 
 /// Calls visit(path, key, fill) for each part of the State after the run's own: media, rules, then entities in creation order.
@@ -215,14 +244,7 @@ std::uint64_t Simulation::hash_parts(std::vector<std::uint64_t>& parts) const {
 
 std::shared_ptr<const std::vector<std::string>> Simulation::name_parts() const {
   auto names = std::make_shared<std::vector<std::string>>(1, "sim");
-  for (const WorldElements::Part& part : elements_.parts()) names->push_back(part.path);
-  for (const auto& entity : entities_) {
-    names->push_back(entity->instance.name);
-    for (const auto& device : entity->devices) names->push_back(device->path);
-    for (const auto& program : entity->programs) names->push_back(program->path);
-  }
-  for (const Team& team : teams())
-    for (const auto& program : team.programs) names->push_back(program->path);
+  for_each_state([&](const std::string& path, std::uint64_t, auto&&) { names->push_back(path); });
   return names;
 }
 
