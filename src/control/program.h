@@ -31,6 +31,12 @@ struct OutsideAnswer {
     gone,     ///< the outside has ended: nothing will come any more; `bytes` are the reason as text
   } kind = Kind::message;
   std::vector<std::byte> bytes;
+
+  static OutsideAnswer of(Kind kind, std::string_view text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {kind, {bytes.begin(), bytes.end()}};
+  }
+  std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 };
 
 /// The side of a program that runs outside this process: a child process, a connection. None of it is State.

@@ -79,9 +79,8 @@ struct RequestText {
     return "pull " + (x.link.empty() ? "" : x.link + " ") + text_of(x.point_L) + " " + text_of(x.target_W);
   }
   std::string operator()(const AnswerRequest& x) const {
-    const std::vector<std::byte>& bytes = x.answer.bytes;
     if (x.answer.kind == OutsideAnswer::Kind::missed) return "no answer in time";
-    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string text(x.answer.text());
     return (x.answer.kind == OutsideAnswer::Kind::gone ? "gone: " : "answer ") + text;
   }
 };

@@ -10,19 +10,6 @@
 #include "messages/json.h"
 
 namespace sandlot::programs::pipe {
-namespace {
-
-std::vector<std::byte> bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-}  // namespace
-
 Status Pipe::init(const Description& robot, const Node& config, Outputs& out) {
   SL_ASSIGN(spec_, read_spec<Spec>(config));
   path_ = out.path();
@@ -54,23 +41,6 @@ Status Pipe::init(const Description& robot, const Node& config, Outputs& out) {
   return {};
 }
 
-Status Pipe::set_parameter(std::string_view path, const Node& value) {
-  Spec changed = spec_;
-  SL_TRY(set_tunable(changed, path, value));
-  spec_ = std::move(changed);
-  return {};
-}
-
-void Pipe::save(ByteWriter& w) const {
-  write_tunables(w, spec_);
-  write(w, state_);
-}
-
-void Pipe::load(ByteReader& r) {
-  read_tunables(r, spec_);
-  read(r, state_);
-}
-
 // ------------------------------------------------------------------------------------- what the simulation sees
 
 Program::Resumed Pipe::resume(const Observation& obs, Command&) {
@@ -96,7 +66,7 @@ Program::Resumed Pipe::answer(const OutsideAnswer& answer, std::span<const Topic
   switch (answer.kind) {
     case OutsideAnswer::Kind::message: {
       ++state_.answers;
-      auto read = read_answer(text_of(answer.bytes), readings_, actuators_, forms, cmd);
+      auto read = read_answer(answer.text(), readings_, actuators_, forms, cmd);
       if (!read) return {.failure = read.error().text()};
       return std::move(*read);
     }
@@ -106,7 +76,7 @@ Program::Resumed Pipe::answer(const OutsideAnswer& answer, std::span<const Topic
     case OutsideAnswer::Kind::gone: break;
   }
   state_.gone = 1;
-  Resumed out = react("is gone: " + std::string(text_of(answer.bytes)), cmd);
+  Resumed out = react("is gone: " + std::string(answer.text()), cmd);
   out.waiting_for = Waiting::nothing;
   return out;
 }
@@ -152,21 +122,21 @@ std::optional<OutsideAnswer> Pipe::receive() {
   child_->move();
   log_notes();
   if (!late_.empty()) {
-    OutsideAnswer late{OutsideAnswer::Kind::message, bytes_of(late_.front())};
+    OutsideAnswer late = OutsideAnswer::of(OutsideAnswer::Kind::message, late_.front());
     late_.erase(late_.begin());
     return late;
   }
   if (broken_.empty() && waiting_)
     if (auto line = child_->take_line()) {
       waiting_ = false;
-      return OutsideAnswer{OutsideAnswer::Kind::message, bytes_of(*line)};
+      return OutsideAnswer::of(OutsideAnswer::Kind::message, *line);
     }
   if (broken_.empty()) broken_ = child_->gone();
   if (broken_.empty()) return std::nullopt;
   if (!last_note_.empty()) broken_ += "; last line of its standard error: " + last_note_;
   child_.reset();
   waiting_ = false;
-  return OutsideAnswer{OutsideAnswer::Kind::gone, bytes_of(std::exchange(broken_, {}))};
+  return OutsideAnswer::of(OutsideAnswer::Kind::gone, std::exchange(broken_, {}));
 }
 
 Result<bool> Pipe::keep_output(const std::string& folder) {

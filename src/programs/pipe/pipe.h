@@ -16,19 +16,12 @@
 /// State        numbers of answers and misses, and whether the process has ended.
 /// Limits       a line has at most 1 MB, at most 64 lines of standard error are logged per step.
 /// Cost         the messages as JSON, and the wait for the answer.
-#include "control/program.h"
 #include "programs/answer.h"
 #include "programs/child.h"
 #include "programs/output_file.h"
+#include "programs/outside_program.h"
 
 namespace sandlot::programs::pipe {
-
-enum class AfterRestore : std::uint8_t { restart, detach };
-inline std::span<const EnumName<AfterRestore>> enum_names(AfterRestore) {
-  static constexpr EnumName<AfterRestore> names[] = {{"restart", AfterRestore::restart},
-                                                     {"detach", AfterRestore::detach}};
-  return names;
-}
 
 struct Spec {
   std::vector<std::string> command;
@@ -74,21 +67,11 @@ struct State {
   }
 };
 
-class Pipe final : public Program, public Outside {
+class Pipe final : public OutsideProgram<Spec, State> {
  public:
   Status init(const Description& robot, const Node& config, Outputs& out) override;
   Resumed resume(const Observation& obs, Command& cmd) override;
   Resumed answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms, Command& cmd) override;
-  Outside* outside() override { return this; }
-  Status set_parameter(std::string_view path, const Node& value) override;
-  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, spec_, state_, path);
-  }
-  void list_values(ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, spec_, state_, visit);
-  }
-  void save(ByteWriter& w) const override;
-  void load(ByteReader& r) override;
 
   Status connect() override;
   bool connected() const override { return child_.has_value(); }
@@ -106,8 +89,6 @@ class Pipe final : public Program, public Outside {
   Resumed react(const std::string& why, Command& cmd);
   void log_notes();
 
-  Spec spec_;
-  State state_;
   std::string path_;  ///< "rover/brain"
   Description robot_;
   std::vector<Named> readings_, actuators_;

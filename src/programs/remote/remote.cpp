@@ -4,15 +4,6 @@
 #include <utility>
 
 namespace sandlot::programs::remote {
-namespace {
-
-std::vector<std::byte> bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
-}  // namespace
-
 Status Remote::init(const Description& robot, const Node& config, Outputs&) {
   SL_ASSIGN(spec_, read_spec<Spec>(config));
   readings_ = names_of(robot.readings);
@@ -23,23 +14,6 @@ Status Remote::init(const Description& robot, const Node& config, Outputs&) {
                  {},
                  "/command"};
   return {};
-}
-
-Status Remote::set_parameter(std::string_view path, const Node& value) {
-  Spec changed = spec_;
-  SL_TRY(set_tunable(changed, path, value));
-  spec_ = changed;
-  return {};
-}
-
-void Remote::save(ByteWriter& w) const {
-  write_tunables(w, spec_);
-  write(w, state_);
-}
-
-void Remote::load(ByteReader& r) {
-  read_tunables(r, spec_);
-  read(r, state_);
 }
 
 Status Remote::connect() {
@@ -97,7 +71,7 @@ std::optional<OutsideAnswer> Remote::receive() {
   set_deadline();
   if (!answer) return std::nullopt;
   waiting_ = false;
-  if (*answer) return OutsideAnswer{OutsideAnswer::Kind::message, bytes_of(**answer)};
+  if (*answer) return OutsideAnswer::of(OutsideAnswer::Kind::message, **answer);
   return OutsideAnswer{OutsideAnswer::Kind::message, {}};  // it went away: nothing is ordered
 }
 
@@ -115,8 +89,7 @@ Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const Top
     case OutsideAnswer::Kind::message: {
       if (answer.bytes.empty()) return miss("the client has gone");
       ++state_.answers;
-      auto read = read_answer({reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()},
-                              readings_, actuators_, forms, cmd);
+      auto read = read_answer(answer.text(), readings_, actuators_, forms, cmd);
       if (read) return std::move(*read);
       ++state_.refused;
       link_->refuse(read.error().text());

@@ -19,9 +19,9 @@
 ///              from there, without a client.
 /// State        numbers of answers, misses and refusals.
 /// Cost         the wait for the answer.
-#include "control/program.h"
 #include "programs/answer.h"
 #include "programs/budget.h"
+#include "programs/outside_program.h"
 #include "programs/remote/link.h"
 
 namespace sandlot::programs::remote {
@@ -88,21 +88,11 @@ struct State {
   }
 };
 
-class Remote final : public Program, public Outside {
+class Remote final : public OutsideProgram<Spec, State> {
  public:
   Status init(const Description& robot, const Node& config, Outputs& out) override;
   Resumed resume(const Observation& obs, Command& cmd) override;
   Resumed answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms, Command& cmd) override;
-  Outside* outside() override { return this; }
-  Status set_parameter(std::string_view path, const Node& value) override;
-  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, spec_, state_, path);
-  }
-  void list_values(ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, spec_, state_, visit);
-  }
-  void save(ByteWriter& w) const override;
-  void load(ByteReader& r) override;
 
   Status connect() override;
   bool connected() const override { return connected_; }
@@ -122,8 +112,6 @@ class Remote final : public Program, public Outside {
  private:
   void set_deadline();
 
-  Spec spec_;
-  State state_;
   std::vector<Named> readings_, actuators_;
 
   // The connection; none of it is State.

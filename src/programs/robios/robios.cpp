@@ -23,11 +23,6 @@ constexpr std::int64_t most_ns = std::int64_t{1} << 62;
 constexpr std::size_t most_logged_lines = 200, most_last_words = 5;
 enum Ended : std::uint8_t { by_itself = 1, killed = 2, spun = 3 };
 
-std::vector<std::byte> bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 }  // namespace
 
 Status Robios::init(const Description& robot, const Node& config, Outputs& out) {
@@ -45,21 +40,8 @@ Status Robios::init(const Description& robot, const Node& config, Outputs& out) 
   return devices_.find(robot, std::exchange(facts_, {}), spec_);
 }
 
-Status Robios::set_parameter(std::string_view path, const Node& value) {
-  Spec changed = spec_;
-  SL_TRY(set_tunable(changed, path, value));
-  spec_ = std::move(changed);
-  return {};
-}
-
-void Robios::save(ByteWriter& w) const {
-  write_tunables(w, spec_);
-  write(w, state_);
-}
-
 void Robios::load(ByteReader& r) {
-  read_tunables(r, spec_);
-  read(r, state_);
+  OutsideProgram::load(r);
   const auto finite = [](const auto& all) {
     return std::all_of(all.begin(), all.end(), [](double each) { return std::isfinite(each); });
   };
@@ -337,7 +319,7 @@ OutsideAnswer Robios::leave(std::string why) {
   child_.reset();
   memory_.reset();
   waiting_ = false;
-  return {OutsideAnswer::Kind::gone, bytes_of(why)};
+  return OutsideAnswer::of(OutsideAnswer::Kind::gone, why);
 }
 
 /// What the processes of the program use, twice a second. Those that use more of the processor than they may are halted

@@ -22,8 +22,8 @@
 ///              steps, messages in between are lost. Moves of a supervisor, and gains of VWStartControl, act at the
 ///              beginning of its slot.
 /// Cost         two switches of processes per turn.
-#include "control/program.h"
 #include "programs/output_file.h"
+#include "programs/outside_program.h"
 #include "programs/process_tree.h"
 #include "programs/robios/robot.h"
 #include "programs/robios/shared_memory.h"
@@ -31,21 +31,11 @@
 
 namespace sandlot::programs::robios {
 
-class Robios final : public Program, public Outside, public Surrounded {
+class Robios final : public OutsideProgram<Spec, State>, public Surrounded {
  public:
   Status init(const Description& robot, const Node& config, Outputs& out) override;
   Resumed resume(const Observation& obs, Command& cmd) override;
   Resumed answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms, Command& cmd) override;
-  Outside* outside() override { return this; }
-  Status set_parameter(std::string_view path, const Node& value) override;
-  ValueFound value(ValuePart part, std::span<const ValueStep> path) const override {
-    return value_at(part, spec_, state_, path);
-  }
-  void list_values(ValuePart part, const ValueVisit& visit) const override {
-    sandlot::list_values(part, spec_, state_, visit);
-  }
-  void save(ByteWriter& w) const override;
-  void load(ByteReader& r) override;
 
   Status connect() override;
   bool connected() const override { return child_.has_value(); }
@@ -58,6 +48,7 @@ class Robios final : public Program, public Outside, public Surrounded {
   Result<bool> keep_output(const std::string& folder) override;
   void adopt(Outside& before) override;
   std::optional<OutsideAnswer> receive() override;
+  void load(ByteReader& r) override;
 
   void describe(std::vector<DeviceFacts> devices, Time tick) override {
     facts_ = std::move(devices);
@@ -85,8 +76,6 @@ class Robios final : public Program, public Outside, public Surrounded {
   OutsideAnswer leave(std::string why);
   std::optional<std::string> over_budget();
 
-  Spec spec_;
-  State state_;
   std::string path_;  ///< "rover/brain"
   Description robot_;
   std::vector<DeviceFacts> facts_;

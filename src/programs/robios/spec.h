@@ -7,16 +7,10 @@
 
 #include "base/fields.h"
 #include "programs/budget.h"
+#include "programs/outside_program.h"
 #include "programs/robios/slot.h"
 
 namespace sandlot::programs::robios {
-
-enum class AfterRestore : std::uint8_t { restart, detach };
-inline std::span<const EnumName<AfterRestore>> enum_names(AfterRestore) {
-  static constexpr EnumName<AfterRestore> names[] = {{"restart", AfterRestore::restart},
-                                                     {"detach", AfterRestore::detach}};
-  return names;
-}
 
 struct Spec {
   std::string program, folder, output;

@@ -52,8 +52,8 @@ void Programs::ask_again(ProgramEntry& entry, Time now) {
 
 void Programs::submit_answer(const ProgramEntry& entry, OutsideAnswer answer) {
   if (answer.kind == OutsideAnswer::Kind::gone)
-    log::warning("program '" + entry.path + "' (" + entry.decl.kind + ") is gone: " +
-                 std::string(reinterpret_cast<const char*>(answer.bytes.data()), answer.bytes.size()));
+    log::warning("program '" + entry.path + "' (" + entry.decl.kind +
+                 ") is gone: " + std::string(answer.text()));
   commands_.submit(AnswerRequest{entry.path, std::move(answer)}, {});
 }
 
