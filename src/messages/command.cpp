@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "messages/geometry_msgs.h"
 #include "messages/json.h"
 #include "messages/registry.h"
 
@@ -79,6 +80,12 @@ Result<std::vector<std::byte>> command_from_document(const TopicBase& slot, cons
   AnyMessage message(slot.info());
   SL_TRY(read_json(slot.info(), document, message.data()));
   return command_of(slot, message);
+}
+
+std::optional<std::vector<std::byte>> standstill(std::string_view type) {
+  if (type == msg::Twist::ros_type) return command_bytes(msg::Twist());
+  if (type == msg::TwistStamped::ros_type) return command_bytes(msg::TwistStamped());
+  return std::nullopt;
 }
 
 }  // namespace sandlot

@@ -5,6 +5,7 @@
 /// Errors   bytes that are not a message of the slot's type, named with the field. Numbers are judged where the command
 ///          is delivered: check_command() of messages/topic.h.
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,5 +25,9 @@ std::vector<std::byte> command_bytes(const M& message) {
 Result<std::vector<std::byte>> command_from_cdr(const TopicBase& slot, std::span<const std::byte> cdr);
 Result<std::vector<std::byte>> command_from_json(const TopicBase& slot, std::string_view json);
 Result<std::vector<std::byte>> command_from_document(const TopicBase& slot, const nlohmann::json& document);
+
+/// The order to stand still, for a slot of that type; nothing: messages of that type are not velocities of a drive. The one place
+/// that knows by which types drives are driven: watchdogs stop these, and clients address them as /ROBOT/cmd_vel.
+std::optional<std::vector<std::byte>> standstill(std::string_view type);
 
 }  // namespace sandlot

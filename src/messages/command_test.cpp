@@ -118,5 +118,19 @@ TEST(CheckCommand, LetsAJointStateLeaveJointsOut) {
   EXPECT_FALSE(slot.assign(command_bytes(wheels)));
 }
 
+TEST(Standstill, IsAnOrderOfNoVelocityForTheTypesThatDrive) {
+  Topic<msg::Twist> plain("/x");
+  plain.message.linear.x = 1, plain.message.angular.z = 2;
+  ASSERT_TRUE(plain.assign(standstill("geometry_msgs/msg/Twist").value()));
+  EXPECT_EQ(plain.message.linear.x, 0);
+  EXPECT_EQ(plain.message.angular.z, 0);
+  Topic<msg::TwistStamped> stamped("/x");
+  stamped.message.twist.linear.y = 1;
+  ASSERT_TRUE(stamped.assign(standstill("geometry_msgs/msg/TwistStamped").value()));
+  EXPECT_EQ(stamped.message.twist.linear.y, 0);
+  EXPECT_FALSE(standstill("std_msgs/msg/Float64"));
+  EXPECT_FALSE(standstill("geometry_msgs/msg/TwistWithCovariance"));
+}
+
 }  // namespace
 }  // namespace sandlot

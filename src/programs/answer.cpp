@@ -148,9 +148,7 @@ Result<Program::Resumed> read_answer(std::string_view line, std::span<const Name
 void stop_drives(std::span<const Named> actuators, Command& cmd) {
   for (const Named& actuator : actuators) {
     if (!actuator.any_level) continue;
-    if (actuator.type == msg::Twist::ros_type) cmd.set_bytes(actuator.index, command_bytes(msg::Twist()));
-    if (actuator.type == msg::TwistStamped::ros_type)
-      cmd.set_bytes(actuator.index, command_bytes(msg::TwistStamped()));
+    if (const auto still = standstill(actuator.type)) cmd.set_bytes(actuator.index, *still);
   }
 }
 

@@ -291,10 +291,8 @@ void Hub::let_go(ClientId id, Client& client, const std::string& why) {
 void Hub::stop_robots(ClientId id, Client& client) {
   if (!std::exchange(client.claim->moving, false)) return;
   for (const Inventory::Slot& slot : inventory_->slots) {
-    const bool drives = slot.info->name == "geometry_msgs/msg/Twist" ||
-                        slot.info->name == "geometry_msgs/msg/TwistStamped";
-    if (!drives || slot.of_program || !slot.active || !client.access.may_command(slot.device)) continue;
-    if (auto still = command_from_json(*slot.blank, "{}"))
+    if (slot.of_program || !slot.active || !client.access.may_command(slot.device)) continue;
+    if (auto still = standstill(slot.info->name))
       (void)session_.submit(CommandRequest{slot.device, slot.info->name, std::move(*still)},
                             {Source::Kind::robot, id});
   }

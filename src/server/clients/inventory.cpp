@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "messages/command.h"
 #include "messages/sensor_images.h"
 #include "server/clients/preview.h"
 #include "sim/world/controllers.h"
@@ -15,9 +16,7 @@ namespace {
 /// A swarm has ten thousand: their services would be most of what a client is told.
 constexpr std::ptrdiff_t most_managed_robots = 200;
 
-bool is_twist(const MessageInfo& info) {
-  return info.name == "geometry_msgs/msg/Twist" || info.name == "geometry_msgs/msg/TwistStamped";
-}
+bool is_drive(const Inventory::Slot& slot) { return slot.active && standstill(slot.info->name).has_value(); }
 
 std::string kind_name(const Simulation& simulation, const Simulation::Device& device, std::uint32_t level) {
   const auto levels = simulation.kind(device).levels;
@@ -167,8 +166,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
   if (topic.size() > alias.size() && topic.substr(topic.size() - alias.size()) == alias) {
     const std::string prefix = std::string(topic.substr(0, topic.size() - alias.size() + 1));
     for (const Slot& slot : slots)
-      if (slot.active && is_twist(*slot.info) && starts_with(slot.device, prefix) && fits(slot))
-        return Target{slot.device, &slot};
+      if (starts_with(slot.device, prefix) && is_drive(slot) && fits(slot)) return Target{slot.device, &slot};
   }
   if (of_other_type)
     return Error{"'" + std::string(topic) + "' takes " + of_other_type->info->name + ", not " + wanted};
@@ -178,7 +176,7 @@ Result<Inventory::Target> Inventory::target(std::string_view topic, std::string_
     if (visible && !visible(slot)) continue;
     known.push_back(slot.name.substr(1));
     if (known.empty() || known.back() != slot.device) known.push_back(slot.device);
-    if (slot.active && is_twist(*slot.info)) {
+    if (is_drive(slot)) {
       known.push_back(std::string(first_part(slot.device)) + "/cmd_vel");
       drives = true;
     }
