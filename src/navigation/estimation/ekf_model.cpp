@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/math.h"
+#include "navigation/estimation/innovation_factor.h"
 
 namespace sandlot::navigation::ekf {
 namespace {
@@ -13,8 +14,6 @@ namespace {
 using Row = Eigen::Map<Eigen::Array<double, Matrix::stride, 1>>;
 using ConstRow = Eigen::Map<const Eigen::Array<double, Matrix::stride, 1>>;
 using RowValue = Eigen::Array<double, Matrix::stride, 1>;
-
-void subtract_row(double* to, double factor, const double* from) { Row(to) -= factor * ConstRow(from); }
 
 /// M becomes F M.
 void apply_transition(const Transition& F, Matrix& M) {
@@ -77,48 +76,20 @@ template <std::size_t m>
 Correction correct_by(Vector& x, Matrix& P, const Innovation& innovation, double gate) {
   constexpr std::size_t stride = Matrix::stride;
   const auto noise = [&](std::size_t i, std::size_t j) { return innovation.noise[i * m + j]; };
-  // S = L L^T
-  std::array<std::array<double, m>, m> L{};
-  for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double covariance = P.at(innovation.index[i], innovation.index[j]) + noise(i, j);
-      double sum = covariance;
-      for (std::size_t k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (i != j) {
-        L[i][j] = sum / L[j][j];
-        continue;
-      }
-      // What rounding alone may have left of the variance is nothing.
-      if (!(sum > 1e-15 * covariance)) return {Correction::Is::singular};
-      L[i][i] = std::sqrt(sum);
-    }
-  Correction result;
-  std::array<double, m> white{};  // L^-1 y
-  for (std::size_t i = 0; i < m; ++i) {
-    double sum = innovation.y[i];
-    for (std::size_t k = 0; k < i; ++k) sum -= L[i][k] * white[k];
-    white[i] = sum / L[i][i];
-    result.squared_distance += white[i] * white[i];
-  }
-  if (gate > 0 && !(result.squared_distance <= gate * gate)) {
-    result.is = Correction::Is::gated;
-    return result;
-  }
+  InnovationFactor<m> factor;
+  const Correction result = factor.factorise(
+      m,
+      [&](std::size_t i, std::size_t j) {
+        return P.at(innovation.index[i], innovation.index[j]) + noise(i, j);
+      },
+      innovation.y.data(), gate);
+  if (result.is != Correction::Is::used) return result;
 
   // K^T = S^-1 H P, and H P, row by row.
   std::array<double, m * stride> HP, KT;
-  for (std::size_t i = 0; i < m; ++i) {
-    Row row(&HP[i * stride]);
-    row = ConstRow(P.row(innovation.index[i]));
-    Row gain(&KT[i * stride]);
-    gain = row;
-    for (std::size_t k = 0; k < i; ++k) subtract_row(&KT[i * stride], L[i][k], &KT[k * stride]);
-    gain *= 1 / L[i][i];
-  }
-  for (std::size_t i = m; i-- > 0;) {
-    for (std::size_t k = i + 1; k < m; ++k) subtract_row(&KT[i * stride], L[k][i], &KT[k * stride]);
-    Row(&KT[i * stride]) *= 1 / L[i][i];
-  }
+  const auto gain = [&](std::size_t i) { return Row(&KT[i * stride]); };
+  for (std::size_t i = 0; i < m; ++i) gain(i) = Row(&HP[i * stride]) = ConstRow(P.row(innovation.index[i]));
+  factor.solve(m, gain);
   // A = (I - K H) P, then P = A (I - K H)^T + K N K^T = A - (A H^T - K N) K^T.
   for (std::size_t r = 0; r < states; ++r) {
     RowValue sum = ConstRow(P.row(r));

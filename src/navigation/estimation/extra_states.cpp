@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/math.h"
+#include "navigation/estimation/innovation_factor.h"
 
 namespace sandlot::navigation::ekf {
 namespace {
@@ -146,45 +147,16 @@ Correction correct(Vector& x, Matrix& P, ExtraStates& extra, const Measurement& 
     for (std::size_t c = 0; c < n; ++c)
       if (measurement.H[i][c] != 0)
         JointRow(&HP[i * n], length) += measurement.H[i][c] * ConstJointRow(joint.row(c), length);
-  // S = L L^T
-  std::array<std::array<double, most_measured>, most_measured> L{};
-  for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double covariance = observed(j, &HP[i * n]) + noise(i, j);
-      double sum = covariance;
-      for (std::size_t k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (i != j) {
-        L[i][j] = sum / L[j][j];
-        continue;
-      }
-      // What rounding alone may have left of the variance is nothing. Differences of nearly equal variances leave more.
-      if (!(sum > 1e-15 * covariance)) return {Correction::Is::singular};
-      L[i][i] = std::sqrt(sum);
-    }
-  Correction result;
-  std::array<double, most_measured> white{};  // L^-1 y
-  for (std::size_t i = 0; i < m; ++i) {
-    double sum = measurement.y[i];
-    for (std::size_t k = 0; k < i; ++k) sum -= L[i][k] * white[k];
-    white[i] = sum / L[i][i];
-    result.squared_distance += white[i] * white[i];
-  }
-  if (gate > 0 && !(result.squared_distance <= gate * gate)) {
-    result.is = Correction::Is::gated;
-    return result;
-  }
+  InnovationFactor<most_measured> factor;
+  const Correction result = factor.factorise(
+      m, [&](std::size_t i, std::size_t j) { return observed(j, &HP[i * n]) + noise(i, j); },
+      measurement.y.data(), gate);
+  if (result.is != Correction::Is::used) return result;
 
   // K^T = S^-1 H P
   const auto gain = [&](std::size_t i) { return JointRow(&KT[i * n], length); };
-  for (std::size_t i = 0; i < m; ++i) {
-    gain(i) = ConstJointRow(&HP[i * n], length);
-    for (std::size_t k = 0; k < i; ++k) gain(i) -= L[i][k] * gain(k);
-    gain(i) *= 1 / L[i][i];
-  }
-  for (std::size_t i = m; i-- > 0;) {
-    for (std::size_t k = i + 1; k < m; ++k) gain(i) -= L[k][i] * gain(k);
-    gain(i) *= 1 / L[i][i];
-  }
+  for (std::size_t i = 0; i < m; ++i) gain(i) = ConstJointRow(&HP[i * n], length);
+  factor.solve(m, gain);
   // A = (I - K H) P, then P = A (I - K H)^T + K N K^T = A - (A H^T - K N) K^T.
   for (std::size_t r = 0; r < n; ++r) {
     JointRow row(joint.row(r), length);
