@@ -9,7 +9,9 @@
 /// Limits    no error of sight. What a robot shows by its ball handler (topic of BallHandlerState) counts as a touch.
 /// Cost      a look at all touches of robots, and a few microseconds.
 #include <algorithm>
+#include <utility>
 
+#include "base/log.h"
 #include "base/math.h"
 #include "messages/command.h"
 #include "messages/messages.h"
@@ -96,6 +98,8 @@ struct Referee {
     const EntityView* entity = nullptr;
   };
   std::vector<Player> players;
+  bool warned = false;  ///< of robots with one number
+  std::string name;     ///< of the rule
   soccer::Input input;
   soccer::Output output;
 
@@ -109,6 +113,7 @@ struct Referee {
       return build.error("field", "goals or penalty marks do not fit into the field",
                          "enlarge width or length");
     spec.titles.resize(2);
+    name = build.decl.name;
     state.game.first_kickoff = static_cast<std::int8_t>(spec.kickoff);
     orders = build.accept_queue<msg::RefereeCommand>("word", most_words);
     state_topic = build.publish<msg::RefereeState>("state");
@@ -165,9 +170,11 @@ struct Referee {
       return std::pair(a.who.team, a.who.number) < std::pair(b.who.team, b.who.number);
     });
     // Two robots with one number: the second one is nobody's.
-    players.erase(std::unique(players.begin(), players.end(),
-                              [](const Player& a, const Player& b) { return a.who == b.who; }),
-                  players.end());
+    const auto same = [](const Player& a, const Player& b) { return a.who == b.who; };
+    if (const auto two = std::adjacent_find(players.begin(), players.end(), same); two != players.end()) {
+      if (!std::exchange(warned, true)) warn_of_twins(two[0], two[1]);
+      players.erase(std::unique(two, players.end(), same), players.end());
+    }
     input.robots.clear();
     for (const Player& player : players) input.robots.push_back(seen(world, player));
     touches(context);
@@ -179,6 +186,15 @@ struct Referee {
         if (order.team == team_name(each)) team = each;
       input.words.push_back({order.command, team, order.robot});
     }
+  }
+
+  void warn_of_twins(const Player& known, const Player& unknown) const {
+    log::warning(
+        "rule '" + name + "': robots '" + known.entity->instance->name + "' and '" +
+        unknown.entity->instance->name + "' of team '" + team_name(known.who.team) +
+        "' have the same number, " + std::to_string(known.who.number) +
+        ", so that the second one is not judged; a number is the digits at the end of a name, such as " +
+        team_name(known.who.team) + "2");
   }
 
   soccer::SeenRobot seen(const WorldView& world, const Player& player) const {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/log.h"
 #include "messages/command.h"
 #include "messages/messages.h"
 #include "sim/load/load.h"
@@ -191,6 +192,34 @@ TEST(RefereeRule, TakesNoWordsFromThoseWhoDriveARobot) {
   ASSERT_FALSE(simulation->outcomes().empty());
   EXPECT_EQ(simulation->outcomes()[0].source.kind, Source::Kind::robot);
   EXPECT_FALSE(simulation->outcomes()[0].status);
+}
+
+TEST(RefereeRule, WarnsOnceOfTwoRobotsWithOneNumber) {
+  const auto warnings = [](const std::vector<std::string>& robots) {
+    std::string text =
+        "version: 1\nname: x\nphysics: planar\nrules: [{kind: referee}]\n"
+        "things: [{name: ball, model: ../../models/msl_ball/model.sdf}]\nrobots:\n";
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      text += "  - {name: " + robots[i] + ", team: cyan, model: {builder: msl_robot}, pose: [" +
+              std::to_string(2 * i + 2) + ", 0, 0]}\n";
+    Diagnostics diagnostics;
+    auto setup = load("tests/referee/x.yaml", {.text = text}, diagnostics);
+    EXPECT_TRUE(setup) << setup.error().text();
+    std::vector<std::string> out;
+    log::set_listener([&](log::Level level, std::string_view line) {
+      if (level == log::Level::warning) out.emplace_back(line);
+    });
+    auto made = Simulation::create(std::move(*setup), {}, diagnostics);
+    EXPECT_TRUE(made) << made.error().text();
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE((*made)->tick());
+    log::set_listener({});
+    return out;
+  };
+  EXPECT_TRUE(warnings({"cyan1", "cyan2", "ada"}).empty());
+  const std::vector<std::string> twins = warnings({"cyan2", "ada", "bob"});
+  ASSERT_EQ(twins.size(), 1u);
+  EXPECT_NE(twins[0].find("'ada' and 'bob' of team 'cyan' have the same number, 0"), std::string::npos)
+      << twins[0];
 }
 
 TEST(RefereeRule, KeysThatCannotBeAreNamed) {
