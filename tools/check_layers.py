@@ -2,7 +2,7 @@
 """The architecture test: reads src/layers.txt and every file in src/, prints each breach, exits 1 if there is one.
 
 Checked: includes between layers, between sibling folders of a `peers` layer, and of third-party headers; what would
-make two runs differ (libm, unseeded randomness, wall clocks); the length of files. A *_test.cpp may include from any
+make two runs differ (libm, unseeded randomness, wall clocks); the length of files, of those of the page (web/src), too. A *_test.cpp may include from any
 layer. A line that has to break a rule about calls says why in a comment `lint-ok: reason`.
 
 Usage: check_layers.py [SRC]      SRC defaults to the src/ beside this script's folder
@@ -111,7 +111,10 @@ def problems_in(path, text, rules):
             found = pattern.search(line)
             if found and not any(path.startswith(home) for home in homes) and "lint-ok:" not in lines[n - 1]:
                 yield n, f"{found[0].rstrip('( ')} {why}"
-    limit = HEADER_LINES if path.endswith(".h") else SOURCE_LINES
+    yield from too_long(lines, HEADER_LINES if path.endswith(".h") else SOURCE_LINES)
+
+
+def too_long(lines, limit):
     if len(lines) > limit and "long file:" not in "\n".join(lines[:15]):
         yield len(lines), f"over {limit} lines: split it by concept, or give the reason at its top as `long file: ...`"
 
@@ -125,6 +128,12 @@ def main():
         for line, message in problems_in(f.relative_to(src).as_posix(), f.read_text(), rules):
             print(f"{f}:{line}: {message}")
             found += 1
+    page = sorted((src.parent / "web" / "src").rglob("*.ts"))
+    for f in page:
+        for line, message in too_long(f.read_text().splitlines(), SOURCE_LINES):
+            print(f"{f}:{line}: {message}")
+            found += 1
+    files += page
     print(f"check_layers: {len(files)} files, {found} problems" if found else f"check_layers: {len(files)} files, all well")
     return 1 if found else 0
 

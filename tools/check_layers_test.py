@@ -98,6 +98,11 @@ class CheckLayers(unittest.TestCase):
         self.refused("base/a.cpp", "\n" * 601, "over 600 lines")
         self.allowed("base/a.h", "/// long file: one table, easier to read whole\n" + "\n" * 400)
 
+    def test_files_of_the_page_stay_short(self):
+        self.allowed("../web/src/a.ts", "\n" * 600)
+        self.refused("../web/src/a.ts", "\n" * 601, "over 600 lines")
+        self.allowed("../web/src/a.ts", "// long file: one scene\n" + "\n" * 700)
+
     def test_the_real_tree_has_rules_for_every_folder(self):
         src = SCRIPT.parent.parent / "src"
         layers = {line.partition(":")[0] for line in (src / "layers.txt").read_text().splitlines() if line[:1].isalpha()}

@@ -30,7 +30,7 @@ test('orientations turn at a constant rate, and the shorter way', () => {
 });
 
 test('each joint is mixed as it moves', () => {
-  // Free, Fixed, Angle, Slide: numbers of Motion as in protocol.ts.
+  // Free, Fixed, Angle, Slide: numbers of Motion as in binary.ts.
   const motions = Uint8Array.of(5, 0, 1, 2);
   const a = new Float64Array(28), b = new Float64Array(28), out = new Float64Array(28);
   a.set([1, 2, 3, ...about_z(0)]);

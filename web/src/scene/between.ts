@@ -4,7 +4,7 @@
 // What glides is what messages tell (the first link's pose, and joints), so that wheels stay on their axles. What is shown
 // lags by one message: when one arrives, the bodies are on their way to it for as long as messages take to come. A run that
 // stands still is shown as it is, at once.
-import { Motion, type PoseSlot } from '../protocol';
+import { Motion, type PoseSlot } from '../binary';
 
 /** Messages that come faster are shown as they come: the screen hardly shows more. */
 const FAST_MS = 40;

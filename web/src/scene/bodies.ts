@@ -1,6 +1,7 @@
 // What stands in the world, as the scene keeps it: bodies by instance id, their links' poses, their slots in batches.
 import * as THREE from 'three';
-import type { Device, Instance, Light, Model, Pose, PoseSlot, World } from '../protocol';
+import type { PoseSlot } from '../binary';
+import type { Device, Instance, Light, Model, Pose, World } from '../protocol';
 import type { Assets } from './assets';
 import { Batches, type Slot } from './batches';
 import { Way } from './between';

@@ -3,7 +3,8 @@
 //   X_WC = X_WP * X_PC(rest) * X_CJ * motion * inverse(X_CJ)
 //
 // What does not move is multiplied out once per model, so that a link costs two products per message.
-import { Motion, motionOf, type Model, type PoseSlot } from '../protocol';
+import { Motion, motionOf, type PoseSlot } from '../binary';
+import type { Model } from '../protocol';
 import { invert, isFinitePose, multiply } from './poses';
 
 /** What all instances of a model share. */

@@ -7,8 +7,17 @@
 //          warning on the console; without WebGL the host shows a sentence instead.
 import * as THREE from 'three';
 import {
-  decodeBatteries, decodeContacts, decodeDeliveries, decodePoses, emptyBatteries, emptyContacts, emptyDeliveries, emptyPosesHeader, readPosesHeader, type World,
-} from '../protocol';
+  decodeBatteries,
+  decodeContacts,
+  decodeDeliveries,
+  decodePoses,
+  emptyBatteries,
+  emptyContacts,
+  emptyDeliveries,
+  emptyPosesHeader,
+  readPosesHeader,
+} from '../binary';
+import type { World } from '../protocol';
 import { Assets } from './assets';
 import { Backdrop, type Theme } from './backdrop';
 import { Between } from './between';

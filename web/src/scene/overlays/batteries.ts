@@ -1,7 +1,7 @@
 // Batteries: a bar over each robot that has one, in the colour of its charge. One draw call for all; bars face the eye and are as wide as the
 // robot, within limits.
 import * as THREE from 'three';
-import type { Batteries as Charges } from '../../protocol';
+import type { Batteries as Charges } from '../../binary';
 import type { Body } from '../bodies';
 
 const FIRST_CAPACITY = 64;

@@ -3,7 +3,8 @@
 // One draw call for all. A line bows to the left of its direction, so that two robots that talk to each other have two. Lines live by the
 // clock of the browser: a run at any speed shows them equally long.
 import * as THREE from 'three';
-import type { Deliveries, Part } from '../../protocol';
+import type { Deliveries } from '../../binary';
+import type { Part } from '../../protocol';
 import type { Body } from '../bodies';
 
 const MOST = 300;

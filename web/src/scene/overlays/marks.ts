@@ -1,7 +1,7 @@
 // Marks at bodies and devices: frames, team rings, velocities, contacts, camera pyramids, cones and beams of ranges.
 import * as THREE from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
-import type { Contacts } from '../../protocol';
+import type { Contacts } from '../../binary';
 import type { Bodies, Body } from '../bodies';
 import { composeMatrix, yawOf } from '../poses';
 import { Beams } from './beams';
