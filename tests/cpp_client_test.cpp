@@ -261,8 +261,8 @@ TEST(CppClient, AddressesThatLeadNowhere) {
       return "connected";
     } catch (const Disconnected& error) { return error.what(); }
   };
-  EXPECT_THAT(why("http://127.0.0.1:1"), HasSubstr("is no address: tcp://HOST:PORT or unix:PATH"));
-  EXPECT_THAT(why("tcp://127.0.0.1"), HasSubstr("is no address"));
+  EXPECT_THAT(why("http://127.0.0.1:1"), HasSubstr("is not an address: tcp://HOST:PORT or unix:PATH"));
+  EXPECT_THAT(why("tcp://127.0.0.1"), HasSubstr("is not an address"));
   EXPECT_THAT(why("tcp://127.0.0.1:1"), HasSubstr("nobody answers at tcp://127.0.0.1:1"));
   EXPECT_THAT(why("unix:/nowhere/at/all"), HasSubstr("nobody answers"));
   EXPECT_THAT(why("unix:" + std::string(200, 'x')), HasSubstr("too long"));

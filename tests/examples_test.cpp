@@ -21,7 +21,8 @@ TEST(Examples, EachFolderStandsAlone) {
     fs::permissions(scratch.path, fs::perms(0755));  // programs that a run starts are not root
     for (const auto& file : fs::directory_iterator(scratch.path)) {
       if (file.path().extension() != ".yaml") continue;
-      if (folder.path().filename() == "soccer_team") continue;  // a team is no scenario: soccer_team_test.py
+      if (folder.path().filename() == "soccer_team")
+        continue;  // a team is not a scenario: soccer_team_test.py
       if (folder.path().filename() == "estimate_recording")
         continue;  // filters are none either: install_test.cpp
       ++checked;

@@ -152,7 +152,7 @@ TEST(SlowInstall, AClientInCppNeedsNothingOfTheSimulator) {
   EXPECT_EQ(shell(client).exit_code, 2);
   const Printed nowhere = shell("SANDLOT_URL=http://here " + client + " pusher1");
   EXPECT_EQ(nowhere.exit_code, 1);
-  EXPECT_THAT(nowhere.out, HasSubstr("'http://here' is no address"));
+  EXPECT_THAT(nowhere.out, HasSubstr("'http://here' is not an address"));
 }
 
 TEST(SlowInstall, AnAgentWithoutSimulatorNeedsLibselforgAlone) {
@@ -216,7 +216,7 @@ TEST(SlowInstall, TheFilterAloneGivesTheEstimatesOfTheRunThatWasRecorded) {
   const Printed wrong = estimate("estimator",
                                  " --device imu=" + package.example("estimate_recording/filters.yaml"));
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.out, HasSubstr("filters.yaml:1: this is no line of `sandlot topic echo --json`"));
+  EXPECT_THAT(wrong.out, HasSubstr("filters.yaml:1: this is not a line of `sandlot topic echo --json`"));
   EXPECT_THAT(estimate("locater", wheels).out,
               HasSubstr("there is no filter 'locater'; known are: estimator, locator"));
   EXPECT_THAT(estimate("estimator", " --device gps" + gps.substr(gps.find('='))).out,

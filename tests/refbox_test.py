@@ -121,7 +121,7 @@ class Box(unittest.TestCase):
         self.assertIn("--refbox-teams: magenta is missing", self.refuse("--refbox=0", "--refbox-teams", "cyan=127.0.0.1"))
         self.assertIn("is neither json nor 2009", self.refuse("--refbox=0", "--refbox-protocol", "xml"))
         self.assertIn("add --refbox", self.refuse("--refbox-protocol", "json"))
-        self.assertIn("'nowhere' is no port", self.refuse("--refbox=nowhere"))
+        self.assertIn("'nowhere' is not a port", self.refuse("--refbox=nowhere"))
         self.assertIn("cannot listen at port 28097 of 192.0.2.7", self.refuse("--refbox=192.0.2.7:28097"))
 
     def test_a_match_begins_with_stop_kickoff_start(self):

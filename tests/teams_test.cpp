@@ -165,7 +165,7 @@ TEST(Reproduce, NamesWhatItDoesNotKnow) {
             2);
   const Printed trace = sandlot("reproduce msl --traces scenarios/pile.yaml --out " + scratch.file("out"));
   EXPECT_EQ(trace.exit_code, 2);
-  EXPECT_THAT(trace.out, HasSubstr("scenarios/pile.yaml:2: these are no step times"));
+  EXPECT_THAT(trace.out, HasSubstr("scenarios/pile.yaml:2: these are not step times"));
 }
 
 TEST(Reproduce, MslIsOnePageOfRecordedStepTimes) {

@@ -77,7 +77,7 @@ class Lines {
     constexpr std::string_view head = "{\"time\":", middle = ",\"message\":";
     const std::size_t at = line.find(middle);
     if (line.rfind(head, 0) != 0 || at == std::string::npos || line.back() != '}')
-      complain("this is no line of `sandlot topic echo --json`");
+      complain("this is not a line of `sandlot topic echo --json`");
     char* end = nullptr;
     const double time_s = std::strtod(line.c_str() + head.size(), &end);
     if (end != line.c_str() + at) complain("the time is no number");

@@ -121,7 +121,7 @@ const char* words_of(int signal) {
     case SIGSEGV: return "the program used memory that is not its own (SIGSEGV), or recursed without end\n";
     case SIGBUS: return "the program used memory that is not there (SIGBUS)\n";
     case SIGFPE: return "the program divided by zero (SIGFPE)\n";
-    case SIGILL: return "the program ran into what is no instruction (SIGILL)\n";
+    case SIGILL: return "the program ran into what is not an instruction (SIGILL)\n";
     case SIGABRT: return "the program gave up (abort)\n";
     default: return "the program was ended from outside\n";
   }

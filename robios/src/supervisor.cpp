@@ -11,8 +11,9 @@ double metres(int mm) { return mm * 1e-3; }
 void get(int id, bool robot, int* x, int* y, int* z, int* phi) {
   const EntityPose* const e = entity(id, robot);
   if (!e)
-    note_once("pose",
-              "a SIM... call asked for a robot or object that is not there, or the robot is no supervisor");
+    note_once(
+        "pose",
+        "a SIM... call asked for a robot or object that is not there, or the robot is not a supervisor");
   set(x, e ? to_int(e->x_m * 1e3) : 0);
   set(y, e ? to_int(e->y_m * 1e3) : 0);
   set(z, e ? to_int(e->z_m * 1e3) : 0);
@@ -22,8 +23,9 @@ void get(int id, bool robot, int* x, int* y, int* z, int* phi) {
 void put(int id, bool robot, int x, int y, int z, int phi) {
   if (robot && id == 0) id = static_cast<int>(machine.robot().id);
   if (!machine.robot().supervisor || !entity(id, robot)) {
-    note_once("move",
-              "a SIM... call would move a robot or object that is not there, or the robot is no supervisor");
+    note_once(
+        "move",
+        "a SIM... call would move a robot or object that is not there, or the robot is not a supervisor");
     return;
   }
   order(OrderKind::set_entity, EntityPose{static_cast<std::uint32_t>(id), robot ? 1u : 0u, metres(x),

@@ -14,14 +14,14 @@ Result<RefboxPlace> read_refbox_place(const std::string& text) {
   if (text.find(':') != std::string::npos) {
     const auto place = server::read_host(text);
     if (!place || place->port < 0)
-      return Error{"--refbox: '" + text + "' is no address with a port", "such as 127.0.0.1:28097"};
+      return Error{"--refbox: '" + text + "' is not an address with a port", "such as 127.0.0.1:28097"};
     out.address = place->host;
     port = std::to_string(place->port);
   }
   double number = 0;
   if (!parse_number(port, number) || !(number >= 0 && number <= 65535) ||
       number != static_cast<double>(static_cast<int>(number)))
-    return Error{"--refbox: '" + text + "' is no port", "such as 28097 or 127.0.0.1:28097"};
+    return Error{"--refbox: '" + text + "' is not a port", "such as 28097 or 127.0.0.1:28097"};
   out.port = static_cast<std::uint16_t>(number);
   return out;
 }

@@ -28,7 +28,7 @@ struct Entry {
     visit(Field{"token", "", "Secret word; left out for spectators: everybody may look on.", 0, 0,
                 Field::none, 1000},
           s.token);
-    visit(Field{"role", "", "What it opens, where that is no robot and no team."}, s.role);
+    visit(Field{"role", "", "What it opens, where that is neither a robot nor a team."}, s.role);
     visit(Field{"robot", "", "Robot that its bearer drives.", 0, 0, Field::none, 1000}, s.robot);
     visit(Field{"team", "", "Team whose robots its bearer drives.", 0, 0, Field::none, 1000}, s.team);
   }

@@ -40,7 +40,7 @@ Result<Address> address_of(CommandCall& call, std::string_view word) {
   if (robot && (*robot)->instance.is_robot) return out;
   call.unknown_thing = true;
   if (!robot) return robot.error();
-  return Error{"'" + out.robot + "' is no robot", "robots have controllers"};
+  return Error{"'" + out.robot + "' is not a robot", "robots have controllers"};
 }
 
 template <class Asked>

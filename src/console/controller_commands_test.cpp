@@ -65,7 +65,7 @@ TEST(ControllersCommand, SaysWhatIsMissing) {
   EXPECT_TRUE(has(talk.refused("controllers load rover1/x"), "needs a name and a kind"));
   EXPECT_TRUE(
       has(talk.refused("controllers start rover1"), "'rover1' names no controller; write ROBOT/CONTROLLER"));
-  EXPECT_TRUE(has(talk.refused("controllers start crate1/x"), "'crate1' is no robot"));
+  EXPECT_TRUE(has(talk.refused("controllers start crate1/x"), "'crate1' is not a robot"));
   EXPECT_TRUE(has(talk.refused("controllers start rover9/x"), "rover9"));
   EXPECT_TRUE(has(talk.refused("controllers start"), "needs a controller"));
   EXPECT_TRUE(has(talk.refused("controllers start stop"), "no controller is named"));

@@ -61,7 +61,7 @@ Result<std::vector<StepTime>> read_step_times(std::string_view text, const std::
     };
     if (!named) {
       if (line != names)
-        return wrong("these are no step times: the names are not time_s,step_s,wall_s,compute_s");
+        return wrong("these are not step times: the names are not time_s,step_s,wall_s,compute_s");
       named = true;
       continue;
     }

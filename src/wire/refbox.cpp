@@ -112,8 +112,8 @@ bool replace_wrong_numbers(std::string& text) {
 /// A number of a list or entry. @param where  "robots[2].pose[0]"
 Status read_count(const Json& value, const std::string& where, double& out) {
   constexpr double most = 1e6;
-  if (value.is_null()) return Error{where + " is no finite number", "leave out what is not known"};
-  if (!value.is_number()) return Error{where + " is no number"};
+  if (value.is_null()) return Error{where + " is not a finite number", "leave out what is not known"};
+  if (!value.is_number()) return Error{where + " is not a number"};
   out = value.get<double>();
   if (!std::isfinite(out) || std::abs(out) > most)
     return Error{where + " is not within a million", "metres, radians and their like"};
@@ -126,7 +126,7 @@ Status read_three(const Json& entry, const char* key, const std::string& where, 
   if (found == entry.end() || found->is_null()) return {};
   const std::string at = where + "." + key;
   if (!found->is_array() || found->size() > out.size())
-    return Error{at + " is no list of at most three numbers"};
+    return Error{at + " is not a list of at most three numbers"};
   for (std::size_t i = 0; i < found->size(); ++i)
     SL_TRY(read_count((*found)[i], at + "[" + std::to_string(i) + "]", out[i]));
   return {};
@@ -140,7 +140,8 @@ Result<const Json*> list_of(const Json& document, const char* key) {
     return Error{"'" + std::string(key) + "' has " + std::to_string(found->size()) + " entries",
                  "at most " + std::to_string(most_entries)};
   for (std::size_t i = 0; i < found->size(); ++i)
-    if (!(*found)[i].is_object()) return Error{std::string(key) + "[" + std::to_string(i) + "] is no object"};
+    if (!(*found)[i].is_object())
+      return Error{std::string(key) + "[" + std::to_string(i) + "] is not an object"};
   return &*found;
 }
 

@@ -112,18 +112,18 @@ TEST(RefboxWorldStates, NeedTheKeysOfTheLeague) {
   }
   EXPECT_EQ(error_of(state_with("type", R"("chat")")), "a message of type 'chat'; worldstate");
   EXPECT_EQ(error_of("hello"), "a message that is not JSON");
-  EXPECT_EQ(error_of(state_with("robots", "[7]")), "robots[0] is no object");
+  EXPECT_EQ(error_of(state_with("robots", "[7]")), "robots[0] is not an object");
 }
 
 TEST(RefboxWorldStates, WithNumbersThatAreNoneAreRefusedByName) {
   EXPECT_EQ(error_of(state_with("robots", R"([{"pose":[0,0,0]},{"pose":[0,NaN,0]}])")),
-            "robots[1].pose[1] is no finite number; leave out what is not known");
+            "robots[1].pose[1] is not a finite number; leave out what is not known");
   EXPECT_EQ(error_of(state_with("balls", R"([{"position":[-Infinity,0,0]}])")),
-            "balls[0].position[0] is no finite number; leave out what is not known");
+            "balls[0].position[0] is not a finite number; leave out what is not known");
   EXPECT_EQ(error_of(state_with("robots", R"([{"pose":[null,0,0]}])")),
-            "robots[0].pose[0] is no finite number; leave out what is not known");
+            "robots[0].pose[0] is not a finite number; leave out what is not known");
   EXPECT_EQ(error_of(state_with("obstacles", R"([{"position":[0,1e999]}])")),
-            "obstacles[0].position[1] is no finite number; leave out what is not known");
+            "obstacles[0].position[1] is not a finite number; leave out what is not known");
   EXPECT_EQ(error_of(state_with("robots", R"([{"pose":[0,0,1e7]}])")),
             "robots[0].pose[2] is not within a million; metres, radians and their like");
   EXPECT_EQ(error_of(state_with("balls", R"([{"position":[0,0,0],"confidence":nan}])")),

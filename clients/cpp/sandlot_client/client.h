@@ -295,7 +295,7 @@ class Connection {
     }
     const std::size_t colon = url.rfind(':');
     if (url.rfind("tcp://", 0) != 0 || colon < 6)
-      throw Disconnected("'" + url + "' is no address: tcp://HOST:PORT or unix:PATH");
+      throw Disconnected("'" + url + "' is not an address: tcp://HOST:PORT or unix:PATH");
     std::string host = url.substr(6, colon - 6), port = url.substr(colon + 1);
     while (!port.empty() && port.back() == '/') port.pop_back();
     if (host.size() > 1 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);

@@ -77,7 +77,7 @@ Result<double> number_at(const Line& line, std::size_t word, const char* what) {
   if (word >= line.words.size()) return line.error("'" + line.keyword().substr(0, 40) + "' lacks " + what);
   const std::string& text = line.words[word];
   if (!parse_number(text, number) || !(std::abs(number) <= largest))
-    return line.error("'" + text.substr(0, 40) + "' is no number for " + what, "give one within 1e9");
+    return line.error("'" + text.substr(0, 40) + "' is not a number for " + what, "give one within 1e9");
   return number;
 }
 

@@ -126,7 +126,7 @@ Result<Plan> read_maze(std::string_view text, const std::string& file, Diagnosti
     }
     if (row.front() != ' ' && row.front() != '|' && row.front() != '_' && !has_posts(row)) {
       diagnostics.warn(
-          {"this line is no row of a maze and left out", "rows begin with a blank or with |", place});
+          {"this line is not a row of a maze and left out", "rows begin with a blank or with |", place});
       continue;
     }
     if (row.size() > 2 * most_columns || rows.size() >= 2 * most_rows + 1)

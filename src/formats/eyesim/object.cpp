@@ -33,7 +33,7 @@ Status collider(const Line& line, Object& out) {
   SL_ASSIGN(const std::vector<double> n, numbers_from(numbers, 2));
   const std::size_t sizes = kind == "box" ? 3 : kind == "capsule" ? 2 : 1;
   if (kind != "box" && kind != "capsule" && kind != "sphere")
-    return line.error("'" + kind.substr(0, 40) + "' is no collider", "known are box, sphere and capsule");
+    return line.error("'" + kind.substr(0, 40) + "' is not a collider", "known are box, sphere and capsule");
   if (n.size() < sizes + 3)
     return line.error("a collider " + kind + " has its centre and its size", "all in mm");
   for (std::size_t i = 3; i < 3 + sizes; ++i)

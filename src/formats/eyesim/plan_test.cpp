@@ -79,7 +79,7 @@ TEST(EyesimWorld, FramesApplyFromTheInnermostOutward) {
 
 TEST(EyesimWorld, SaysWhatIsWrongWithItsLine) {
   EXPECT_EQ(wld_error("pop\n"), "room.wld:1: 'pop' has no 'push' before it");
-  EXPECT_EQ(wld_error("\n0 0 10 x\n"), "room.wld:2: 'x' is no number for this place; give one within 1e9");
+  EXPECT_EQ(wld_error("\n0 0 10 x\n"), "room.wld:2: 'x' is not a number for this place; give one within 1e9");
   EXPECT_EQ(wld_error("width -3\n"),
             "room.wld:1: a floor of this size is none; give its width and height in mm");
   EXPECT_EQ(wld_error("push 1 2\n"), "room.wld:1: 'push' lacks an angle in degrees");

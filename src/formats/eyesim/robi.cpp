@@ -121,7 +121,7 @@ class RobiReader {
     else if (starts_with(kind, "ackermann")) drive_ = Drive::ackermann;
     else if (starts_with(kind, "omni")) drive_ = Drive::omni;
     else
-      return line.error("'" + kind.substr(0, 40) + "' is no drive",
+      return line.error("'" + kind.substr(0, 40) + "' is not a drive",
                         "known are DIFFERENTIAL_DRIVE, ACKERMANN_DRIVE and OMNI_DRIVE");
     drive_line_ = true;
     return {};
@@ -140,7 +140,8 @@ class RobiReader {
     SL_ASSIGN(const std::vector<double> n, numbers_from(line, 2));
     const std::size_t sizes = kind == "box" ? 3 : kind == "capsule" ? 2 : 1;
     if (kind != "box" && kind != "capsule" && kind != "sphere")
-      return line.error("'" + kind.substr(0, 40) + "' is no collider", "known are box, sphere and capsule");
+      return line.error("'" + kind.substr(0, 40) + "' is not a collider",
+                        "known are box, sphere and capsule");
     if (n.size() < sizes + 3)
       return line.error("a collider " + kind + " has its size and its centre", "all in mm");
     for (std::size_t i = 0; i < sizes; ++i)

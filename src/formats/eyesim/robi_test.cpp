@@ -113,8 +113,9 @@ TEST(EyesimRobot, OfEachDriveIsWhole) {
 }
 
 TEST(EyesimRobot, SaysWhatIsWrongWithItsLine) {
-  EXPECT_EQ(robi_error("drive LEGS\n"),
-            "scout.robi:1: 'legs' is no drive; known are DIFFERENTIAL_DRIVE, ACKERMANN_DRIVE and OMNI_DRIVE");
+  EXPECT_EQ(
+      robi_error("drive LEGS\n"),
+      "scout.robi:1: 'legs' is not a drive; known are DIFFERENTIAL_DRIVE, ACKERMANN_DRIVE and OMNI_DRIVE");
   EXPECT_EQ(robi_error("drive OMNI_DRIVE\nmass 0\n"), "scout.robi:2: the mass of a robot is above 0");
   EXPECT_EQ(robi_error("wheel 50 100 0 80\n"), "scout.robi:1: the numbers of wheels are above 0");
   EXPECT_EQ(robi_error("psd A 1 0 0 0 0\npsd A 2 0 0 0 0\n"),
@@ -166,7 +167,7 @@ TEST(EyesimObject, SaysWhatIsWrongWithItsLine) {
   EXPECT_EQ(object("mass -1\n"),
             "post.esObj:1: the mass of an object is above 0; 'fixed' keeps it in its place");
   EXPECT_EQ(object("collider torus 1 2 3\n"),
-            "post.esObj:1: 'torus' is no collider; known are box, sphere and capsule");
+            "post.esObj:1: 'torus' is not a collider; known are box, sphere and capsule");
 }
 
 TEST(EyesimModelSpace, IsLeftHanded) {

@@ -290,7 +290,7 @@ Status set_pose(const Model& model, State& state, const Pose2& X_MB, const Covar
                  "a pose on the map"};
   double L[3][3];
   if (!amcl_root(covariance, L))
-    return Error{"the initial covariance is no covariance",
+    return Error{"the initial covariance is not a covariance",
                  "nine finite numbers, symmetric and positive semi-definite"};
   amcl_restart(state);
   const auto count = static_cast<std::size_t>(model.spec().max_particles);

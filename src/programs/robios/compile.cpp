@@ -373,7 +373,7 @@ Result<ProgramLaunch> prepare(const Source& source) {
   } else if (access(file.c_str(), X_OK) == 0) {
     out.command = {shown};
   } else {
-    return Error{"'" + source.program + "' is no program",
+    return Error{"'" + source.program + "' is not a program",
                  "program: names a .c, .cpp or .py file, a library (.so) or an executable (chmod +x)"};
   }
   return out;

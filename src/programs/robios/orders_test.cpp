@@ -147,7 +147,7 @@ TEST(RobiosPrograms, WhatIsNoProgramIsSaidSo) {
   EXPECT_THAT(none.error().text(), HasSubstr("there is no program 'none.c' in '/usr'"));
   const auto text = prepare({"passwd", "/etc", 0, {}, {}});
   ASSERT_FALSE(text);
-  EXPECT_THAT(text.error().text(), HasSubstr("'passwd' is no program"));
+  EXPECT_THAT(text.error().text(), HasSubstr("'passwd' is not a program"));
 }
 
 }  // namespace

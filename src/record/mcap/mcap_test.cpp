@@ -341,8 +341,8 @@ TEST_F(Mcap, OtherFilesAndVersionsAreNamed) {
     const auto reader = Reader::open(leave("x.mcap", content));
     return reader ? std::string("read") : reader.error().text();
   };
-  EXPECT_THAT(error_of(""), HasSubstr("no MCAP recording"));
-  EXPECT_THAT(error_of("#ROSBAG V2.0\n and so on"), HasSubstr("no MCAP recording"));
+  EXPECT_THAT(error_of(""), HasSubstr("not an MCAP recording"));
+  EXPECT_THAT(error_of("#ROSBAG V2.0\n and so on"), HasSubstr("not an MCAP recording"));
   std::string newer = loose_file();
   newer[5] = '1';
   EXPECT_THAT(error_of(newer), HasSubstr("version '1'"));

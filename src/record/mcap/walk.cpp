@@ -116,7 +116,7 @@ Result<Walk> Walk::begin(const InputFile& file, const Limits& limits) {
   SL_TRY(file.read(0, std::as_writable_bytes(std::span(found).first(there))));
   const Place place{file.damaged(0, "").place};
   if (there < found.size() || !std::equal(found.begin(), found.begin() + 5, magic.begin()))
-    return Error{"this is no MCAP recording", "", place};
+    return Error{"this is not an MCAP recording", "", place};
   if (found != magic)
     return Error{std::string("this is an MCAP recording of version '") + static_cast<char>(found[5]) + "'",
                  "this Sandlot reads version '0'", place};

@@ -179,7 +179,8 @@ TEST(Refbox, KeepsTheLatestWorldStateAndGoesOnAfterWrongOnes) {
   nan.replace(nan.find("[1,2,0]"), 7, "[1,NaN,0]");
   cyan.send(nan + "\0"s);
   ASSERT_TRUE(soon([&] { return box.team(Side::cyan).wrong == 3; }));
-  EXPECT_EQ(box.team(Side::cyan).error, "robots[0].pose[1] is no finite number; leave out what is not known");
+  EXPECT_EQ(box.team(Side::cyan).error,
+            "robots[0].pose[1] is not a finite number; leave out what is not known");
   box.box->say({{"STOP"}});
   EXPECT_EQ(next(cyan), R"({"command":"STOP","targetTeam":""})");
 }

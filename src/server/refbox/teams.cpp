@@ -61,7 +61,7 @@ Status read_team(std::string_view entry, RefboxTeams& out, std::array<bool, 2>& 
     id = std::string(trim(pattern.substr(at + 1)));
     pattern = trim(pattern.substr(0, at));
     if (!is_pattern(id) || id.find('*') != std::string::npos)
-      return Error{teams_option + ("'" + id) + "' is no multicast address", "such as 224.16.32.39"};
+      return Error{teams_option + ("'" + id) + "' is not a multicast address", "such as 224.16.32.39"};
   } else if (const auto of_league = league_id(pattern)) {
     id = *of_league;
   }

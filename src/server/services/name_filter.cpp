@@ -162,7 +162,7 @@ class NameFilter::Parser {
           std::string_view(":.=").find(text_[1]) != std::string_view::npos) {
         const std::size_t end = text_.find(":]", 2);
         if (text_[1] != ':' || end == std::string_view::npos || !add_class(text_.substr(2, end - 2), out))
-          return Error{"'" + std::string(text_.substr(0, 12)) + "' is no class of letters",
+          return Error{"'" + std::string(text_.substr(0, 12)) + "' is not a class of letters",
                        "[:alpha:], [:digit:], [:alnum:] ... are"};
         text_.remove_prefix(end + 2);
         continue;

@@ -49,7 +49,7 @@ Result<Opened> open(std::span<const std::byte> snapshot) {
   std::array<char, 8> magic{};
   std::uint32_t version = 0;
   read(r, magic);
-  if (!r.ok() || magic != snapshot_magic) return Error{"this is no Sandlot snapshot"};
+  if (!r.ok() || magic != snapshot_magic) return Error{"this is not a Sandlot snapshot"};
   read(r, version);
   if (!r.ok()) return damaged("it is cut short");
   if (version != snapshot_version)

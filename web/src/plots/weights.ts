@@ -22,7 +22,7 @@ export const signedMaps: Record<'dark' | 'light', SignedMap> = {
   light: {zero: [255, 255, 255], positive: [209, 92, 12], negative: [29, 95, 219]},
 };
 
-/** A value within +-most; what is no finite number is grey. */
+/** A value within +-most; what is not a finite number is grey. */
 export function signedColor(value: number, most: number, map: SignedMap): Rgb {
   if (!Number.isFinite(value)) return [128, 128, 128];
   const share = most > 0 ? Math.min(1, Math.abs(value) / most) : 0;

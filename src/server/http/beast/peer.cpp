@@ -150,7 +150,8 @@ struct Connection final : Peer, std::enable_shared_from_this<Connection> {
                                   ec == net::error::connection_reset)
                                 return end();
                               if (ec.category() == http_errors)
-                                return refuse(400, fmt::format("this is no HTTP request: {}", ec.message()));
+                                return refuse(400,
+                                              fmt::format("this is not an HTTP request: {}", ec.message()));
                               if (ec) return end();
                               on_request();
                             }));

@@ -104,7 +104,7 @@ Status TcpPort::Impl::listen() {
   const auto address = net::ip::make_address(options.address == "localhost" ? "127.0.0.1" : options.address,
                                              ec);
   if (ec)
-    return Error{fmt::format("{}: '{}' is no address", options.option, options.address),
+    return Error{fmt::format("{}: '{}' is not an address", options.option, options.address),
                  "such as 127.0.0.1:28097"};
   const tcp::endpoint at(address, options.port);
   acceptor.open(at.protocol(), ec);
