@@ -4,6 +4,7 @@
 #include <fstream>
 #include <utility>
 
+#include "base/line_comment.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "console/command.h"
@@ -24,20 +25,6 @@ struct Console::ScheduledAnswers {
 };
 
 namespace {
-
-std::string_view without_comment(std::string_view line) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quote) {
-      if (line[i] == quote) quote = 0;
-    } else if (line[i] == '"' || line[i] == '\'') {
-      quote = line[i];
-    } else if (line[i] == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) {
-      return line.substr(0, i);
-    }
-  }
-  return line;
-}
 
 Error unknown_command(const std::string& word, const Console::Options& options) {
   return {"there is no command '" + word.substr(0, 60) + "'",

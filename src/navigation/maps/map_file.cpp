@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/line_comment.h"
+
 namespace sandlot::navigation {
 namespace {
 
@@ -17,21 +19,6 @@ Error map_file_error(const std::string& file, int line, const std::string& path,
   error.place.file = std::make_shared<const std::string>(file);
   error.place.line = line;
   return error;
-}
-
-/// The text before a comment; a # within quotes or within a word begins none.
-std::string_view map_file_without_comment(std::string_view line) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quote) {
-      if (line[i] == quote) quote = 0;
-    } else if (line[i] == '"' || line[i] == '\'') {
-      quote = line[i];
-    } else if (line[i] == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) {
-      return line.substr(0, i);
-    }
-  }
-  return line;
 }
 
 std::string_view map_file_unquoted(std::string_view value) {
@@ -171,7 +158,7 @@ Result<MapHeader> parse_map_header(std::string_view text, Diagnostics& notes, co
   int number = 0;
   for (std::string_view line : split(text, '\n')) {
     ++number;
-    line = trim(map_file_without_comment(line));
+    line = trim(without_comment(line));
     if (line.empty() || line == "---") continue;
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos)
