@@ -2,9 +2,6 @@
 // Eigen, rotations as products of three, every derivative by dual numbers, P = (I - K H) P. It shares no code with the filter.
 #include <gtest/gtest.h>
 
-// At -O0 the precompiled headers of g++ 12 say all the same that code is optimised, since fmt asks for that for a while; then large
-// products of Eigen do not compile.
-#undef __OPTIMIZE__
 #include <Eigen/Dense>
 
 #include "base/random.h"
