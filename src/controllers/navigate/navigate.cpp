@@ -48,6 +48,7 @@ Status Navigate::init(const Description& robot, Outputs& out) {
   navigator_ = std::move(navigator);
   SL_ASSIGN(laser_, robot.reading<msg::LaserScan>(spec.laser));
   X_BL_ = robot.pose(laser_);
+  X_BL_.p.x -= spec.axle_m;
   if (!spec.pose.empty()) { SL_ASSIGN(pose_, robot.reading<msg::PoseWithCovarianceStamped>(spec.pose)); }
   if (!pose_ || !spec.odometry.empty()) { SL_ASSIGN(odometry_, robot.reading<msg::Odometry>(spec.odometry)); }
   if (spec.publish.empty()) {
@@ -73,6 +74,19 @@ bool Navigate::fits() const {
          layer.free.size() == layer.trust.size() && state.next <= spec.goals.size();
 }
 
+Pose2 Navigate::at_axle(const Pose& X_MB) const {
+  Pose2 out = in_plane(X_MB);
+  if (spec.axle_m == 0) return out;
+  const auto [s, c] = math::sincos(out.theta);
+  out.x += c * spec.axle_m, out.y += s * spec.axle_m;
+  return out;
+}
+PlanarTwist Navigate::at_axle(const msg::Twist& v_B) const {
+  PlanarTwist out = in_plane(v_B);
+  if (spec.axle_m != 0) out.vy_mps += spec.axle_m * out.w_radps;
+  return out;
+}
+
 navigation::NavigatorInput Navigate::input(const Observation& obs) {
   navigation::NavigatorInput in;
   in.dt_s = period_s_;
@@ -82,10 +96,9 @@ navigation::NavigatorInput Navigate::input(const Observation& obs) {
     const auto odometry = obs.get(*odometry_);
     if (odometry.valid && !pose_) frame_ = odometry.message.header.frame_id;
     if (odometry.valid && fresh_enough(odometry.stamp)) {
-      in.velocity = in_plane(odometry.message.twist.twist);
+      in.velocity = at_axle(odometry.message.twist.twist);
       if (!pose_) {
-        in.X_MB = driven(in_plane(odometry.message.pose.pose), *in.velocity,
-                         (obs.now() - odometry.stamp).s());
+        in.X_MB = driven(at_axle(odometry.message.pose.pose), *in.velocity, (obs.now() - odometry.stamp).s());
         in.pose_std_m = position_std(odometry.message.pose.covariance);
       }
     }
@@ -96,7 +109,7 @@ navigation::NavigatorInput Navigate::input(const Observation& obs) {
     if (pose.valid && fresh_enough(pose.stamp)) {
       const navigation::NavigatorState& s = state.navigator;
       const PlanarTwist v = in.velocity.value_or(PlanarTwist{s.last_vx_mps, s.last_vy_mps, s.last_w_radps});
-      in.X_MB = driven(in_plane(pose.message.pose.pose), v, (obs.now() - pose.stamp).s());
+      in.X_MB = driven(at_axle(pose.message.pose.pose), v, (obs.now() - pose.stamp).s());
       in.pose_std_m = position_std(pose.message.pose.covariance);
     }
   }

@@ -11,6 +11,8 @@
 ///            of Nav2's NavigateToPose among its values.
 /// Goals      those of `goals` in order; a goal_pose replaces the present goal and ends the list. Both are in the frame of the pose.
 ///            An orientation of zeros (or no yaw) means any heading.
+/// Car        follows its plan with the middle of the axle that does not steer: `axle` is its place on the base link. `footprint`, goals,
+///            plans and the velocities are of that point.
 /// Errors     goals in a wall, off the map, without a way: `status` has the level ERROR and the reason; the list goes on, or ends with
 ///            stop_on_failure. A goal_pose of another frame, or with one before there is a pose, is refused: counted, the present goal stays. Pose or scan older than
 ///            `timeout`, or a pose less certain than max_pose_std: the robot stands. The log has a warning with the reason of each failure and refusal, and of a
@@ -43,6 +45,7 @@ struct Spec : navigation::NavigatorSpec {
   std::string laser, odometry, pose, drive, publish;
   std::vector<Goal> goals;
   bool loop = false, stop_on_failure = false;
+  double axle_m = 0;
   double pause_s = 0, timeout_s = 0.5, costmap_rate_hz = 1, status_rate_hz = 2;
 
   static void fields(auto& s, auto&& visit) {
@@ -65,6 +68,13 @@ struct Spec : navigation::NavigatorSpec {
             "Topic, such as cmd_vel, that sends the velocities to other programs; no drive is ordered then.",
             0, 0, Field::none, 1000},
         s.publish);
+    visit(
+        Field{
+            "axle", "m",
+            "Place on the robot, x, of the axle of a car that does not steer: plans, goals, the outline and "
+            "the velocities are those of its middle.",
+            -100, 100},
+        s.axle_m);
     visit(Field{"goals", "", "Goals to drive to, in order.", 0, 0, Field::none, 10'000}, s.goals);
     visit(Field{"loop", "", "Whether to begin again after the last goal."}, s.loop);
     visit(Field{"stop_on_failure", "", "Whether a goal that fails ends the list."}, s.stop_on_failure);
@@ -127,12 +137,15 @@ struct Navigate {
   std::string why_blind(const Observation& obs, const navigation::NavigatorInput& in) const;
   /// Pose and velocity as they are now; no pose if it is too old.
   navigation::NavigatorInput input(const Observation& obs);
+  /// From the base link to the middle of the axle.
+  navigation::Pose2 at_axle(const Pose& X_MB) const;
+  navigation::PlanarTwist at_axle(const msg::Twist& v_B) const;
   void publish(const Observation& obs, Command& cmd, const navigation::NavigatorStep& step, bool placed);
   void publish_status(Command& cmd, const navigation::NavigatorStep& step);
 
   std::optional<navigation::Navigator> navigator_;  ///< its state is in `state` between steps
   double period_s_ = 0;
-  Pose X_BL_;
+  Pose X_BL_;  ///< from the middle of the axle
   Reading<msg::LaserScan> laser_;
   std::optional<Reading<msg::Odometry>> odometry_;
   std::optional<Reading<msg::PoseWithCovarianceStamped>> pose_;

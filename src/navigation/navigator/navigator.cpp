@@ -83,6 +83,8 @@ Result<Navigator> Navigator::make(const NavigatorSpec& spec, double period_s, st
               .goal_tolerance_rad = spec.goal_tolerance_rad};
   out.pursuit_ = {.drive = spec.chassis == Chassis::car ? Drive::car : Drive::omni,
                   .speed_mps = l.speed_mps,
+                  .backward_speed_mps = std::max(0.001, l.backward_mps),
+                  .sideways_speed_mps = l.sideways_mps,
                   .min_speed_mps = std::min(0.05, l.speed_mps),
                   .acceleration_mps2 = l.acceleration_mps2,
                   .min_lookahead_m = std::min(0.3, spec.lookahead_m),
@@ -349,12 +351,30 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
     } else {
       const bool touching = footprint_contact(local_, GridFrame(local_.geometry), footprint_, X) !=
                             Contact::none;
-      const PursuitStep step = pursue(pursuit_, s.pursuit, plan_, X, &local_, in.dt_s);
+      const Footprint& checked = touching ? outline : footprint_;
+      const PursuitState before = s.pursuit;
+      PursuitStep step = pursue(pursuit_, s.pursuit, plan_, X, &local_, in.dt_s);
+      // The way to the point pursued cuts corners of the plan: where that would touch something, a nearer one is pursued.
+      if (!command_safe(checked, X, step.command)) {
+        PursuitSpec near = pursuit_;
+        near.min_lookahead_m = near.max_lookahead_m = std::max(0.1, 2 * area_.resolution_m);
+        PursuitState state = before;
+        const PursuitStep nearer = pursue(near, state, plan_, X, &local_, in.dt_s);
+        if (command_safe(checked, X, nearer.command)) step = nearer, s.pursuit = state;
+      }
       arrived = step.status == Following::arrived;
       command = step.command;
       if (step.status == Following::missed || step.status == Following::lost)
         failing = s.plan_wanted = true, s.reason = "the robot has left its plan";
-      for (int k = 0; k < 3 && !command_safe(touching ? outline : footprint_, X, command); ++k) {
+      // What the plan crossed blindly may have gone out of memory, or the robot off its plan.
+      const bool blind = command.vx_mps < 0 || std::abs(command.vy_mps) > std::abs(command.vx_mps);
+      if (blind && !motion_known(X, command, area_.resolution_m)) {
+        command = {};
+        failing = s.plan_wanted = true;
+        s.pursuit.speed_mps = 0;
+        s.reason = "it is not known whether the way backward or sideways is free";
+      }
+      for (int k = 0; k < 3 && !command_safe(checked, X, command); ++k) {
         command = {command.vx_mps / 2, command.vy_mps / 2, command.w_radps / 2};
         if (k < 2) continue;
         command = {};
@@ -390,7 +410,11 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
   if (step.clear_map)
     clear_near(area_, s.layer, {X.x, X.y}, spec_.window_m / 2,
                grown_.circumscribed_m() + recovery.back_up_m + 2 * area_.resolution_m);
-  if (step.plan_again) s.plan_wanted = true;
+  if (step.plan_again) {
+    s.plan_wanted = true;
+    // What leads a car to the same place again is no way, though it looks free.
+    if (!by_dwa()) plan_.clear(), s.plan.clear();
+  }
   if (step.stage == RecoveryStage::given_up || s.vain > 2 * static_cast<std::uint32_t>(recovery.rounds)) {
     (void)fail(Error{s.reason.empty() ? "the robot gets no further" : s.reason,
                      "given up after " + std::to_string(s.recoveries) + " recoveries"});

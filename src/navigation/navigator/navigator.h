@@ -17,8 +17,7 @@
 ///          the robot no nearer, and after `time_limit` at the latest.
 ///          Without a pose, or with one less certain than max_pose_std, the robot stands.
 /// Limits   obstacles in the plane of the laser. A goal outside the area is never reached: no rolling map.
-///          The first pose is taken as free. Plans of car and four_wheel_steer may lead backwards over the unknown, and gaps stay
-///          closed for the other two alone. A car's local plan is its global one: it stops before obstacles and plans
+///          The first pose is taken as free. Gaps that were found blocked stay closed for differential and omni alone. A car's local plan is its global one: it stops before obstacles and plans
 ///          again. Latency of the drive is not modelled.
 /// Cost     a step: local map about 40 ns a cell of the window (0.4 ms at 5 m and 0.05 m), dynamic window 0.5 ms; a scan 0.1 ms; a
 ///          plan some milliseconds, with the global map 40 ns a cell. Memory: three bytes a cell of the area, 20 during a plan;
@@ -45,7 +44,8 @@ struct NavigatorLimits {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"speed", "m/s", "Greatest speed forward.", 0.01, 100}, s.speed_mps);
     visit(Field{"backward", "m/s", "Greatest speed backward.", 0, 100}, s.backward_mps);
-    visit(Field{"sideways", "m/s", "Greatest speed sideways of an omni chassis.", 0.01, 100}, s.sideways_mps);
+    visit(Field{"sideways", "m/s", "Greatest speed sideways of omni and four_wheel_steer.", 0.01, 100},
+          s.sideways_mps);
     visit(Field{"turn_rate", "rad/s", "Greatest turn rate.", 0.01, 100}, s.turn_radps);
     visit(Field{"acceleration", "m/s^2", "Greatest change of speed.", 0.01, 1000}, s.acceleration_mps2);
     visit(Field{"turn_acceleration", "rad/s^2", "Greatest change of the turn rate.", 0.01, 1000},
@@ -269,9 +269,9 @@ class Navigator {
   /// Outline for checks of contacts: without the margin, or smaller, for a robot that is nearer already, so that it can leave.
   Footprint fitting_footprint(const Pose2& X) const;
   void mark_driven(const Pose2& X);
-  /// Whether nothing that the robot covers at a pose is unknown.
-  bool pose_known(const Pose2& X) const;
-  bool motion_known(const Pose2& X, const PlanarTwist& v) const;
+  /// Whether nothing that the robot covers at a pose is unknown. @param slack_m  width of its rim that does not count
+  bool pose_known(const Pose2& X, double slack_m = 0) const;
+  bool motion_known(const Pose2& X, const PlanarTwist& v, double slack_m = 0) const;
   double remaining(const Pose2& X) const;
   bool command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const;
   /// Whether a velocity soon brings the robot nearer to a moving disc than standing would, and too near.

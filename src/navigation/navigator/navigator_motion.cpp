@@ -26,6 +26,7 @@ Footprint Navigator::fitting_footprint(const Pose2& X) const {
 
 void Navigator::mark_driven(const Pose2& X) {
   const GridFrame frame(area_);
+  if (!frame.cell({X.x, X.y})) return;
   const Vec2 g = frame.to_grid({X.x, X.y});
   const double reach = footprint_.circumscribed_m() / area_.resolution_m + 1;
   // Cells whose centres it covers, as in pose_known(): more of them, and a robot could creep into the unknown.
@@ -37,7 +38,7 @@ void Navigator::mark_driven(const Pose2& X) {
         state_.layer.free[area_.index({x, y})] = 255;
 }
 
-bool Navigator::pose_known(const Pose2& X) const {
+bool Navigator::pose_known(const Pose2& X, double slack_m) const {
   const GridFrame frame(area_);
   const Vec2 g = frame.to_grid({X.x, X.y});
   const double reach = footprint_.circumscribed_m() / area_.resolution_m;
@@ -48,16 +49,16 @@ bool Navigator::pose_known(const Pose2& X) const {
       const std::size_t i = area_.index({x, y});
       // What is an obstacle is known, too: a contact, which others look for.
       if (state_.layer.free[i] == 0 && state_.layer.trust[i] == 0 &&
-          footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= 0)
+          footprint_distance(footprint_, X, frame.to_map({x + 0.5, y + 0.5})) <= -slack_m)
         return false;
     }
   return true;
 }
 
-bool Navigator::motion_known(const Pose2& X, const PlanarTwist& v) const {
+bool Navigator::motion_known(const Pose2& X, const PlanarTwist& v, double slack_m) const {
   const double speed = math::hypot(v.vx_mps, v.vy_mps);
   const double ahead_s = dwa_.period_s + std::max(speed / spec_.limits.acceleration_mps2, 0.3);
-  return pose_known(driven(X, v, ahead_s / 2)) && pose_known(driven(X, v, ahead_s));
+  return pose_known(driven(X, v, ahead_s / 2), slack_m) && pose_known(driven(X, v, ahead_s), slack_m);
 }
 
 bool Navigator::command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const {

@@ -76,7 +76,8 @@ Status Navigator::make_plan(const Pose2& X) {
     if (!state_.goal_heading && math::hypot(goal.x - X.x, goal.y - X.y) > 1e-6)
       end.theta = math::atan2(goal.y - X.y, goal.x - X.x);
     const bool touching = footprint_contact(map, GridFrame(map.geometry), grown_, X) != Contact::none;
-    SL_ASSIGN(HybridPlan plan, plan_hybrid(map, touching ? footprint_ : grown_, hybrid_, X, end));
+    SL_ASSIGN(HybridPlan plan, plan_hybrid(map, touching ? footprint_ : grown_, hybrid_, X, end,
+                                           [this](const Pose2& there) { return pose_known(there); }));
     path = std::move(plan.poses);
   }
   if (state_.goal_heading && by_dwa()) {
@@ -97,8 +98,11 @@ std::optional<Pose2> Navigator::blocked_pose() const {
     const Pose2& p = plan_[i].pose;
     const auto cell = frame.cell({p.x, p.y});
     if (!cell) break;
-    const bool blocked = by_dwa() ? local_.cost[local_.geometry.index(*cell)] >= inscribed_cost
-                                  : footprint_contact(local_, frame, footprint_, p) == Contact::obstacle;
+    // A rim of a cell: the robot may be as far beside its plan, and what it covers then is known.
+    const bool blocked = by_dwa()
+                             ? local_.cost[local_.geometry.index(*cell)] >= inscribed_cost
+                             : footprint_contact(local_, frame, footprint_, p) == Contact::obstacle ||
+                                   (is_blind(plan_[i].direction_B) && !pose_known(p, area_.resolution_m));
     if (blocked) return p;
   }
   return {};

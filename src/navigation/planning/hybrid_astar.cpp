@@ -65,11 +65,12 @@ class HybridDistances {
 class HybridSearch {
  public:
   HybridSearch(const CostMap& map, const Footprint& footprint, const HybridSpec& spec, const Pose2& goal,
-               Cell goal_cell)
+               Cell goal_cell, const std::function<bool(const Pose2&)>& known)
       : map_(map),
         frame_(map.geometry),
         footprint_(footprint),
         spec_(spec),
+        known_(known),
         goal_(goal),
         distances_(map, spec.cost_weight, goal_cell),
         spacing_m_(map.geometry.resolution_m / 2),
@@ -176,13 +177,15 @@ class HybridSearch {
     if (move.curvature_pm != 0) f *= spec_.arc_factor;
     return f;
   }
-  /// Price of a move; infinite where the footprint touches something.
+  /// Price of a move; infinite where the footprint touches something, or a blind move leads into the unknown.
   double drive(const Pose2& from, const Move& move) {
     scratch_.clear();
     append_poses(scratch_, from, move, spacing_m_, spacing_rad_);
     double cost = 0;
+    const bool blind = known_ && is_blind(move.direction_B);
     for (const PathPose& at : scratch_) {
       if (footprint_contact(map_, frame_, footprint_, at.pose) != Contact::none) return hybrid_never;
+      if (blind && !known_(at.pose)) return hybrid_never;
       cost += map_.cost[map_.geometry.index(*frame_.cell({at.pose.x, at.pose.y}))];
     }
     if (move.direction_B == Vec2{0, 0}) return move.amount * spec_.turn_price_mprad;
@@ -287,6 +290,7 @@ class HybridSearch {
   GridFrame frame_;
   const Footprint& footprint_;
   const HybridSpec& spec_;
+  const std::function<bool(const Pose2&)>& known_;
   Pose2 goal_;
   HybridDistances distances_;
   double spacing_m_, spacing_rad_;
@@ -316,7 +320,8 @@ Status hybrid_end(const CostMap& map, const GridFrame& frame, const Footprint& f
 }  // namespace
 
 Result<HybridPlan> plan_hybrid(const CostMap& map, const Footprint& footprint, const HybridSpec& spec,
-                               const Pose2& start, const Pose2& goal) {
+                               const Pose2& start, const Pose2& goal,
+                               const std::function<bool(const Pose2&)>& known) {
   SL_TRY(check_ranges(spec));
   SL_TRY(check_geometry(map.geometry));
   if (map.cost.size() != map.geometry.cells() || map.distance_m.size() != map.geometry.cells())
@@ -329,7 +334,7 @@ Result<HybridPlan> plan_hybrid(const CostMap& map, const Footprint& footprint, c
   SL_TRY(hybrid_end(map, frame, footprint, goal, "goal"));
   const Pose2 from{start.x, start.y, math::wrap_angle(start.theta)},
       to{goal.x, goal.y, math::wrap_angle(goal.theta)};
-  return HybridSearch(map, footprint, spec, to, *frame.cell({to.x, to.y})).run(from);
+  return HybridSearch(map, footprint, spec, to, *frame.cell({to.x, to.y}), known).run(from);
 }
 
 }  // namespace sandlot::navigation

@@ -12,12 +12,14 @@
 /// Frame    poses in the map's frame, of the footprint's origin (the middle of the rear axle of a car).
 /// Errors   start or goal not finite, off the map or with the footprint in an obstacle; no way; no way within
 ///          max_expansions.
+/// Unknown  with `known`, moves backward and sideways lead over what is known to be free alone.
 /// Limits   the footprint is checked at poses at most half a cell (and of a turn, half a cell of the outermost
 ///          corner) apart: corners may cut an obstacle by a small part of that. Near the optimum, not optimal.
 ///          Steering and driving direction change at once, at the given price.
 /// Cost     10 to 50 us an expansion; two times 12 bytes a cell for the heuristic.
 /// Source   D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, Path planning for autonomous vehicles in unknown
 ///          semi-structured environments (2010). Sideways moves, turns and the open list's goal are ours.
+#include <functional>
 #include <vector>
 
 #include "navigation/maps/footprint.h"
@@ -70,7 +72,13 @@ struct HybridPlan {
   std::size_t expanded = 0;
 };
 
+/// Whether a move leads where a robot whose sensors look ahead may not see: backward or sideways.
+inline bool is_blind(Vec2 direction_B) { return direction_B.x < 0 || direction_B.y != 0; }
+
+/// @param known  whether all that the robot covers at a pose is known to be free: blind moves lead to such poses alone; none: the
+///               map knows all
 Result<HybridPlan> plan_hybrid(const CostMap& map, const Footprint& footprint, const HybridSpec& spec,
-                               const Pose2& start, const Pose2& goal);
+                               const Pose2& start, const Pose2& goal,
+                               const std::function<bool(const Pose2&)>& known = {});
 
 }  // namespace sandlot::navigation

@@ -166,6 +166,7 @@ PursuitStep pursue(const PursuitSpec& spec, PursuitState& state, std::span<const
     if (spec.approach_distance_m > 0)
       speed = std::min(speed, spec.speed_mps * std::min(1.0, to_end / spec.approach_distance_m));
     speed = std::max(speed, std::min(spec.min_speed_mps, spec.speed_mps));
+    if (sign < 0) speed = std::min(speed, spec.backward_speed_mps);
     if (spec.drive != Drive::omni && std::abs(curvature) * speed > spec.max_turn_rate_radps)
       speed = spec.max_turn_rate_radps / std::abs(curvature);
     const double change = spec.acceleration_mps2 * dt_s;
@@ -175,9 +176,11 @@ PursuitStep pursue(const PursuitSpec& spec, PursuitState& state, std::span<const
       // Heading of the path where the target lies, in front of the robot by the lookahead.
       std::size_t facing = state.at;
       while (facing < end && pursuit_distance(pursuit_point(path[facing]), p) < lookahead) ++facing;
-      const double v = std::min(std::abs(state.speed_mps), std::sqrt(square) / dt_s),
-                   length = std::sqrt(square);
-      out.command = {v * t.x / length, v * t.y / length,
+      const double length = std::sqrt(square), x = t.x / length, y = t.y / length;
+      double v = std::min(std::abs(state.speed_mps), length / dt_s);
+      if (v * -x > spec.backward_speed_mps) v = spec.backward_speed_mps / -x;
+      if (v * std::abs(y) > spec.sideways_speed_mps) v = spec.sideways_speed_mps / std::abs(y);
+      out.command = {v * x, v * y,
                      pursuit_turn_rate(spec, math::wrap_angle(path[facing].pose.theta - X.theta), dt_s)};
     } else {
       out.command = {state.speed_mps, 0, state.speed_mps * curvature};

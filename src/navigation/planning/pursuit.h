@@ -30,7 +30,8 @@ std::span<const EnumName<Drive>> enum_names(Drive);
 
 struct PursuitSpec {
   Drive drive = Drive::differential;
-  double speed_mps = 0.5, min_speed_mps = 0.05, acceleration_mps2 = 0.5;
+  double speed_mps = 0.5, backward_speed_mps = 0.5, sideways_speed_mps = 0.5, min_speed_mps = 0.05,
+         acceleration_mps2 = 0.5;
   double lookahead_time_s = 1.5, min_lookahead_m = 0.3, max_lookahead_m = 1;
   double max_turn_rate_radps = 1.5, turn_acceleration_radps2 = 3;
   double turning_radius_m = 1;
@@ -47,6 +48,9 @@ struct PursuitSpec {
                 "omni: drives to any side."},
           s.drive);
     visit(Field{"speed", "m/s", "Speed on a free straight.", 0.001, 100}, s.speed_mps);
+    visit(Field{"backward_speed", "m/s", "Speed backward, at most.", 0.001, 100}, s.backward_speed_mps);
+    visit(Field{"sideways_speed", "m/s", "Speed sideways of an omnidirectional robot, at most.", 0.001, 100},
+          s.sideways_speed_mps);
     visit(Field{"min_speed", "m/s", "Speed that slowing down does not go below.", 0.001, 100},
           s.min_speed_mps);
     visit(Field{"acceleration", "m/s^2", "Greatest change of speed.", 0.001, 1000}, s.acceleration_mps2);
