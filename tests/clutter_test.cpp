@@ -96,6 +96,27 @@ TEST(SlowClutter, ReachesItsGoalsAmongMovers) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_all_goals(seed, "2");
 }
 
+/// A car and a robot with four steered wheels, whose lasers do not see what is behind them: `gap` is of the rectangle about their bodies.
+void expect_all_goals_on(const char* chassis, std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    const auto simulation = clutter(seed, {{"chassis", chassis}});
+    double gap = 1e9;
+    const auto over = [&](const char* name) { return value(*simulation, std::string("rover/controller.") + name); };
+    for (int i = 0; i < 24'000 && over("reached") + over("failed") < 4; i += 5) {
+      advance(*simulation, 5);
+      gap = std::min(gap, value(*simulation, "gap"));
+    }
+    std::printf("seed %d, %s: gap %.3f m, %g s, %g reached\n", static_cast<int>(seed), chassis, gap,
+                simulation->now().s(), over("reached"));
+    EXPECT_GT(gap, 0) << seed;
+    EXPECT_EQ(over("reached"), 4) << seed << ' ' << status(*simulation).message;
+  }
+}
+TEST(SlowClutter, ACarReachesItsGoals) { expect_all_goals_on("car", 1, 2); }
+TEST(SlowClutter, FourSteeredWheelsReachTheirGoals) { expect_all_goals_on("four_wheel_steer", 1, 2); }
+TEST(HandClutter, Car) { expect_all_goals_on("car", 1, 20); }
+TEST(HandClutter, Steer) { expect_all_goals_on("four_wheel_steer", 1, 20); }
+
 /// Ticks until all goals have an end. @return whether the rule `touched` has counted a contact
 bool drive_on(Simulation& simulation, const std::string& navigator, double goals, int most_ticks) {
   for (int i = 0; i < most_ticks; i += 20) {
