@@ -101,7 +101,9 @@ void expect_all_goals_on(const char* chassis, std::uint64_t first, std::uint64_t
   for (std::uint64_t seed = first; seed <= last; ++seed) {
     const auto simulation = clutter(seed, {{"chassis", chassis}});
     double gap = 1e9;
-    const auto over = [&](const char* name) { return value(*simulation, std::string("rover/controller.") + name); };
+    const auto over = [&](const char* name) {
+      return value(*simulation, std::string("rover/controller.") + name);
+    };
     for (int i = 0; i < 24'000 && over("reached") + over("failed") < 4; i += 5) {
       advance(*simulation, 5);
       gap = std::min(gap, value(*simulation, "gap"));
@@ -114,8 +116,8 @@ void expect_all_goals_on(const char* chassis, std::uint64_t first, std::uint64_t
 }
 TEST(SlowClutter, ACarReachesItsGoals) { expect_all_goals_on("car", 1, 2); }
 TEST(SlowClutter, FourSteeredWheelsReachTheirGoals) { expect_all_goals_on("four_wheel_steer", 1, 2); }
-TEST(HandClutter, Car) { expect_all_goals_on("car", 1, 20); }
-TEST(HandClutter, Steer) { expect_all_goals_on("four_wheel_steer", 1, 20); }
+TEST(LongClutter, ACarReachesItsGoalsOnTwentySeeds) { expect_all_goals_on("car", 1, 20); }
+TEST(LongClutter, FourSteeredWheelsReachTheirGoalsOnTwentySeeds) { expect_all_goals_on("four_wheel_steer", 1, 20); }
 
 /// Ticks until all goals have an end. @return whether the rule `touched` has counted a contact
 bool drive_on(Simulation& simulation, const std::string& navigator, double goals, int most_ticks) {

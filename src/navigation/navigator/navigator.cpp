@@ -344,7 +344,7 @@ NavigatorStep Navigator::step(const NavigatorInput& in) {
         step = choose_velocity(dwa, s.dwa, local_, outline, plan_, X, velocity, discs_);
       }
       arrived = step.status == Driving::arrived;
-      command = step.command;
+      command = within_limits(step.command);
       if (step.status == Driving::blocked) failing = true, s.reason = "no velocity is free of contacts";
       if (step.status == Driving::lost)
         failing = s.plan_wanted = true, s.reason = "the robot has left its plan";

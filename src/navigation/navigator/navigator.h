@@ -250,8 +250,7 @@ class Navigator {
 
  private:
   Navigator(const NavigatorSpec& spec, const Footprint& footprint, const Footprint& grown);
-  /// Whether the dynamic window drives; else the pursuit.
-  bool by_dwa() const { return spec_.chassis <= Chassis::omni; }
+  bool by_dwa() const { return spec_.chassis <= Chassis::omni; }  ///< the dynamic window drives; else the pursuit
   void place_area(const Pose2& X);
   void observe(const NavigatorInput& in, const Pose2& X);
   /// Obstacles of a part of the area.
@@ -261,10 +260,9 @@ class Navigator {
   Result<std::vector<PathPose>> grid_path(CostMap map, const Pose2& X);
   /// First pose ahead on the plan that is blocked; nothing if it is free.
   std::optional<Pose2> blocked_pose() const;
-  bool plan_free() const { return !blocked_pose(); }
   /// Remembers that a plan was blocked at a pose.
   void note_blocked(const Pose2& at);
-  /// The same for a robot that gets no further, where its outline with the margin touches something on the plan.
+  /// The same where the outline of a robot that is stuck touches something.
   void note_stuck();
   /// Outline for checks of contacts: without the margin, or smaller, for a robot that is nearer already, so that it can leave.
   Footprint fitting_footprint(const Pose2& X) const;
@@ -273,6 +271,8 @@ class Navigator {
   bool pose_known(const Pose2& X, double slack_m = 0) const;
   bool motion_known(const Pose2& X, const PlanarTwist& v, double slack_m = 0) const;
   double remaining(const Pose2& X) const;
+  /// The same arc at velocities within the limits: a robot is measured to be faster by mistake, too.
+  PlanarTwist within_limits(const PlanarTwist& v) const;
   bool command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const;
   /// Whether a velocity soon brings the robot nearer to a moving disc than standing would, and too near.
   bool nears_disc(const Pose2& X, const PlanarTwist& v) const;

@@ -61,6 +61,17 @@ bool Navigator::motion_known(const Pose2& X, const PlanarTwist& v, double slack_
   return pose_known(driven(X, v, ahead_s / 2), slack_m) && pose_known(driven(X, v, ahead_s), slack_m);
 }
 
+PlanarTwist Navigator::within_limits(const PlanarTwist& v) const {
+  double share = 1;
+  const auto limit = [&](double value, double most) {
+    if (std::abs(value) > most) share = std::min(share, most / std::abs(value));
+  };
+  limit(v.vx_mps, v.vx_mps < 0 ? spec_.limits.backward_mps : spec_.limits.speed_mps);
+  limit(v.vy_mps, spec_.limits.sideways_mps);
+  limit(v.w_radps, spec_.limits.turn_radps);
+  return share < 1 ? PlanarTwist{share * v.vx_mps, share * v.vy_mps, share * v.w_radps} : v;
+}
+
 bool Navigator::command_safe(const Footprint& outline, const Pose2& X, const PlanarTwist& v) const {
   const GridFrame frame(local_.geometry);
   const double speed = math::hypot(v.vx_mps, v.vy_mps);

@@ -86,7 +86,7 @@ Status Navigator::make_plan(const Pose2& X) {
     path.push_back(last);
   }
   // A new way for a free old one only if it is clearly shorter.
-  if (!plan_.empty() && plan_free() && navigator_length(path) > 0.9 * remaining(X)) return {};
+  if (!plan_.empty() && !blocked_pose() && navigator_length(path) > 0.9 * remaining(X)) return {};
   set_plan(std::move(path));
   return {};
 }

@@ -284,10 +284,7 @@ DwaStep choose_velocity(const DwaSpec& spec, DwaState& state, const CostMap& map
   const double braking_s = dwa_braking_s(spec, velocity),
                keep = std::max(0.0, 1 - spec.period_s / std::max(braking_s, 1e-9));
   out.status = Driving::blocked;
-  // Within the limits, also when the velocity that was measured is not.
-  out.command = {std::clamp(keep * velocity.vx_mps, spec.min_vx_mps, spec.max_vx_mps),
-                 std::clamp(keep * velocity.vy_mps, -spec.max_vy_mps, spec.max_vy_mps),
-                 std::clamp(keep * velocity.w_radps, -spec.max_w_radps, spec.max_w_radps)};
+  out.command = {keep * velocity.vx_mps, keep * velocity.vy_mps, keep * velocity.w_radps};
   return out;
 }
 
