@@ -1,8 +1,6 @@
 #include "statistics/ratings.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,21 +8,19 @@
 
 #include "base/check.h"
 #include "base/math.h"
+#include "statistics/dense.h"
+#include "statistics/quantiles.h"
 
 namespace sandlot::statistics {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Values = std::vector<double>;
 
 /// Weight of one pair's results: games and prior together.
 struct Results {
   std::size_t a = 0, b = 0;
   double wins_a = 0, ties = 0, wins_b = 0;
 };
-
-Index at(std::size_t i) { return static_cast<Index>(i); }
 
 /// All pairs with their share of the prior: each player gets half a win, half a tie and half a defeat in all.
 std::vector<Results> results_of(std::size_t players, std::span<const PlayedGame> games) {
@@ -48,17 +44,17 @@ std::vector<Results> results_of(std::size_t players, std::span<const PlayedGame>
 /// Logarithm of the likelihood, its gradient and the information (minus its Hessian) for x = (strengths, ln nu).
 struct Likelihood {
   double value = 0;
-  VectorXd gradient;
-  MatrixXd information;
+  Values gradient;
+  Dense information;
 };
 
 /// The law is an exponential family, so the gradient is what was seen minus what is expected, and the information is the covariance of the
 /// statistics: half of (wins - defeats) of each player, and the number of ties.
-Likelihood likelihood(const VectorXd& x, const std::vector<Results>& all) {
-  const Index tie = x.size() - 1;
-  Likelihood out{0, VectorXd::Zero(x.size()), MatrixXd::Zero(x.size(), x.size())};
+Likelihood likelihood(const Values& x, const std::vector<Results>& all) {
+  const std::size_t tie = x.size() - 1;
+  Likelihood out{0, Values(x.size(), 0), Dense(x.size(), x.size())};
   for (const Results& pair : all) {
-    const Index a = at(pair.a), b = at(pair.b);
+    const std::size_t a = pair.a, b = pair.b;
     const double half = 0.5 * (x[a] - x[b]);
     const double top = std::max({half, -half, x[tie]});
     const double win = math::exp(half - top), loss = math::exp(-half - top), draw = math::exp(x[tie] - top);
@@ -84,32 +80,41 @@ Likelihood likelihood(const VectorXd& x, const std::vector<Results>& all) {
 }
 
 /// Adds the one direction in which the likelihood is flat, all strengths at once, with information 1.
-void hold_mean(MatrixXd& information, Index players) {
-  information.topLeftCorner(players, players).array() += 1.0 / static_cast<double>(players);
+void hold_mean(Dense& information, std::size_t players) {
+  for (std::size_t i = 0; i < players; ++i)
+    for (std::size_t j = 0; j < players; ++j) information(i, j) += 1.0 / static_cast<double>(players);
 }
 
 /// Newton's method. The likelihood is concave, and strictly so but for the mean, because the prior connects all players.
-VectorXd most_likely(std::size_t players, const std::vector<Results>& all) {
-  VectorXd x = VectorXd::Zero(at(players) + 1);
+Values most_likely(std::size_t players, const std::vector<Results>& all) {
+  Values x(players + 1, 0);
   constexpr int most_steps = 200;
   Likelihood here = likelihood(x, all);
   for (int i = 0; i < most_steps; ++i) {
-    MatrixXd information = here.information;
-    hold_mean(information, at(players));
-    const VectorXd step = information.ldlt().solve(here.gradient);
-    double part = 1;
-    VectorXd next = x + step;
+    Dense information = here.information;
+    hold_mean(information, players);
+    const Values step = Factors(std::move(information)).solve(here.gradient);
+    double part = 1, longest = 0;
+    const auto ahead = [&] {
+      Values out = x;
+      for (std::size_t k = 0; k < out.size(); ++k) out[k] += part * step[k];
+      return out;
+    };
+    Values next = ahead();
     Likelihood there = likelihood(next, all);
     for (; there.value < here.value && part > 1e-9; there = likelihood(next, all)) {
       part /= 2;
-      next = x + part * step;
+      next = ahead();
     }
     if (there.value < here.value) break;  // rounding alone is left
     x = std::move(next);
     here = std::move(there);
-    if (part * step.cwiseAbs().maxCoeff() < 1e-12) break;
+    for (const double s : step) longest = std::max(longest, std::abs(s));
+    if (part * longest < 1e-12) break;
   }
-  x.head(at(players)).array() -= x.head(at(players)).mean();
+  double mean = 0;
+  for (std::size_t i = 0; i < players; ++i) mean += x[i] / static_cast<double>(players);
+  for (std::size_t i = 0; i < players; ++i) x[i] -= mean;
   return x;
 }
 
@@ -164,9 +169,7 @@ void name_bounds(Ratings& out, std::span<const PlayedGame> games) {
   }
 }
 
-double quantile(double confidence) {
-  return boost::math::quantile(boost::math::normal(), 0.5 + confidence / 2);
-}
+double quantile(double confidence) { return normal_quantile(0.5 + confidence / 2); }
 
 void check_games(std::span<const PlayedGame> games, double confidence) {
   SL_CHECK(confidence > 0 && confidence < 1);
@@ -198,19 +201,21 @@ Ratings rate(std::size_t players, std::span<const PlayedGame> games, double conf
   if (players < 2) return out;
 
   const std::vector<Results> all = results_of(players, games);
-  const VectorXd x = most_likely(players, all);
-  out.tie = math::exp(x[at(players)]);
-  MatrixXd information = likelihood(x, all).information;
-  hold_mean(information, at(players));
-  MatrixXd covariance = information.ldlt().solve(MatrixXd::Identity(x.size(), x.size()));
-  covariance.topLeftCorner(at(players), at(players)).array() -= 1.0 / static_cast<double>(players);
+  const Values x = most_likely(players, all);
+  out.tie = math::exp(x[players]);
+  Dense information = likelihood(x, all).information;
+  hold_mean(information, players);
+  const Dense inverse = Factors(std::move(information)).inverse();
+  const auto covariance = [&](std::size_t i, std::size_t j) {
+    return inverse(i, j) - 1.0 / static_cast<double>(players);
+  };
   const double z = quantile(confidence);
   for (std::size_t i = 0; i < players; ++i) {
     Rating& rating = out.players[i];
-    rating.strength = x[at(i)];
-    const double half = z * std::sqrt(std::max(0.0, covariance(at(i), at(i))));
+    rating.strength = x[i];
+    const double half = z * std::sqrt(std::max(0.0, covariance(i, i)));
     rating.interval = {rating.strength - half, rating.strength + half};
-    for (std::size_t j = 0; j < players; ++j) out.covariance[i * players + j] = covariance(at(i), at(j));
+    for (std::size_t j = 0; j < players; ++j) out.covariance[i * players + j] = covariance(i, j);
   }
   // Strengths that are equal but for rounding are equal.
   std::stable_sort(out.order.begin(), out.order.end(), [&](std::size_t a, std::size_t b) {
