@@ -49,7 +49,9 @@ endfunction()
 set_source_files_properties(src/navigation/estimation/ekf_clones_test.cpp PROPERTIES
   SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
 
-foreach(layer IN LISTS sandlot_layers)
+set(layers ${sandlot_layers})
+list(REVERSE layers)  # long batches first, as the layers themselves (layers.cmake)
+foreach(layer IN LISTS layers)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/${layer}/*_test.cpp)
   set(label unit)
   if(layer STREQUAL "server")
