@@ -15,7 +15,7 @@ struct Row {
   double time, focal, zoom, target, status, pan, bearing, range;  ///< NaN: there is none
 };
 
-std::vector<Row> run(const std::string& arguments) {
+std::vector<Row> run_ptz(const std::string& arguments) {
   const TestFolder scratch;
   const Printed printed = sandlot(
       "run tests/scenarios/ptz.yaml " + arguments + " --log " + scratch.file("log.csv") +
@@ -50,7 +50,7 @@ const double shortest = 16 / std::tan(0.567232);
 const double bearing = std::atan2(1, 2.848);
 
 TEST(PtzCamera, TurnsAndZoomsByHandAndTheZoomNarrowsItsView) {
-  const auto rows = run(
+  const auto rows = run_ptz(
       "--command 'at 1s command guard/head_unit Float64 {\"data\": 4}' "
       "--command 'at 4s command guard/head_unit JointState {\"name\": [\"pan_joint\"], \"position\": "
       "[0.338]}' "
@@ -76,7 +76,7 @@ TEST(PtzCamera, TurnsAndZoomsByHandAndTheZoomNarrowsItsView) {
 }
 
 TEST(PtzCamera, TracksWithTheZoomThatKeepsTheSize) {
-  const auto rows = run(
+  const auto rows = run_ptz(
       "--set levels=[objects] --set unit_level=view --set zoom_per_m=1 "
       "--command 'at 500ms command guard/head_unit String {\"data\": \"track ball\"}'");
   ASSERT_EQ(rows.size(), 801u);
@@ -88,7 +88,7 @@ TEST(PtzCamera, TracksWithTheZoomThatKeepsTheSize) {
 }
 
 TEST(PtzCamera, LooksAtAPoint) {
-  const auto rows = run(
+  const auto rows = run_ptz(
       "--set levels=[objects] --set unit_level=view "
       "--command 'at 500ms command guard/head_unit PointStamped {\"header\": {\"frame_id\": \"world\"}, "
       "\"point\": {\"x\": 3, \"y\": 1, \"z\": 0.11}}'");

@@ -13,8 +13,8 @@ namespace {
 using testing::HasSubstr;
 
 /// Two rovers with agents. `more` are further keys of the first one's controller.
-std::string scenario(const TestFolder& folder, const std::string& more = "",
-                     const std::string& name = "s.yaml") {
+std::string watch_scenario(const TestFolder& folder, const std::string& more = "",
+                           const std::string& name = "s.yaml") {
   std::string text =
       "version: 1\nname: agents\nphysics: planar\ntime: {step: 10 ms, control_interval: 2, stop: 2 "
       "s}\nrobots:\n";
@@ -35,7 +35,7 @@ std::string scenario(const TestFolder& folder, const std::string& more = "",
 
 TEST(SelfOrgWatch, ALogOfAnAgentIsReadByPlotAndByTheLibrary) {
   TestFolder folder;
-  const std::string file = scenario(folder), log = folder.file("one.log"), hash = "state_hash";
+  const std::string file = watch_scenario(folder), log = folder.file("one.log"), hash = "state_hash";
   const std::string set = " --command 'at 1s set one/controller.parameters.epsC 0.3'";
   const auto with = summary_of(file + set + " --agent-log one/controller=" + log);
   ASSERT_FALSE(with.contains("failed")) << with.dump(2);
@@ -65,7 +65,7 @@ TEST(SelfOrgWatch, ALogOfAnAgentIsReadByPlotAndByTheLibrary) {
 TEST(SelfOrgWatch, AScenarioLogsTheValuesThatItNames) {
   TestFolder folder;
   const std::string log = folder.file("one.log");
-  const std::string file = scenario(
+  const std::string file = watch_scenario(
       folder, "      log: {file: " + log + ", interval: 10, values: ['C[*', '-C[1*']}\n");
   const auto summary = summary_of(file);
   ASSERT_FALSE(summary.contains("failed")) << summary.dump(2);
@@ -78,7 +78,7 @@ TEST(SelfOrgWatch, AScenarioLogsTheValuesThatItNames) {
 
 TEST(SelfOrgWatch, WrongLogsAreRefusedBeforeAnythingIsReplaced) {
   TestFolder folder;
-  const std::string file = scenario(folder), log = folder.write("keep.log", "mine");
+  const std::string file = watch_scenario(folder), log = folder.write("keep.log", "mine");
   for (const auto& [option, why] :
        {std::pair{"rover=", "there is no agent 'rover'"}, std::pair{"", "there are 2 agents"},
         std::pair{"one/laser=", "there is no agent 'one/laser'"}}) {
@@ -96,7 +96,7 @@ TEST(SelfOrgWatch, WrongLogsAreRefusedBeforeAnythingIsReplaced) {
 
 TEST(SelfOrgWatch, WhatAScriptLoadsIsRecordedAndReplayedWithoutTheFile) {
   TestFolder folder;
-  const std::string file = scenario(folder), here = "cd " + folder.path.string() + " && ";
+  const std::string file = watch_scenario(folder), here = "cd " + folder.path.string() + " && ";
   const std::string sandlot_bin = std::filesystem::absolute(SANDLOT_BIN).string();
   const auto run = [&](const std::string& arguments) { return shell(here + sandlot_bin + " " + arguments); };
   const Printed stored = run("run " + file +

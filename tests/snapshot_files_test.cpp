@@ -25,12 +25,12 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const std::string run = "run scenarios/indoor.yaml --set physics=planar --headless ";
+const std::string indoor_run = "run scenarios/indoor.yaml --set physics=planar --headless ";
 
 TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames) {
   const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
-  ASSERT_EQ(sandlot(run + "--duration 1s --snapshot-every 0.25s --snapshot " + file).exit_code, 0);
+  ASSERT_EQ(sandlot(indoor_run + "--duration 1s --snapshot-every 0.25s --snapshot " + file).exit_code, 0);
   EXPECT_THAT(names_in(scratch.path),
               ElementsAre("a-000000.250.snapshot", "a-000000.500.snapshot", "a-000000.750.snapshot",
                           "a-000001.000.snapshot", "a.snapshot"));
@@ -40,7 +40,7 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
   // 0.3 s is not a multiple: the next one is due at 0.5 s all the same.
   const TestFolder second;
   const std::string mid = second.file("mid.snapshot"), again = second.file("a.snapshot");
-  ASSERT_EQ(sandlot(run + "--duration 0.3s --snapshot " + mid).exit_code, 0);
+  ASSERT_EQ(sandlot(indoor_run + "--duration 0.3s --snapshot " + mid).exit_code, 0);
   ASSERT_EQ(
       sandlot("run --from " + mid +
               " --headless --duration 0.7s --snapshot-every 0.25s --snapshot-keep 2 --snapshot " + again)
@@ -53,7 +53,7 @@ TEST(SnapshotFiles, OneEachIntervalTheLastOnesStayAndAContinuedRunKeepsTheNames)
 TEST(SnapshotFiles, InfoSaysWhatIsInOne) {
   const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
-  ASSERT_EQ(sandlot(run + "--duration 0.5s --seed 12 --snapshot " + file).exit_code, 0);
+  ASSERT_EQ(sandlot(indoor_run + "--duration 0.5s --seed 12 --snapshot " + file).exit_code, 0);
   const Printed info = sandlot("info " + file);
   EXPECT_EQ(info.exit_code, 0);
   for (const char* word :
@@ -66,7 +66,7 @@ TEST(SnapshotFiles, InfoSaysWhatIsInOne) {
 TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
   const TestFolder scratch;
   const std::string file = scratch.file("good.snapshot");
-  ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
+  ASSERT_EQ(sandlot(indoor_run + "--duration 0.1s --snapshot " + file).exit_code, 0);
   const std::string good = contents(file);
   const auto refused = [&](const char* name, const std::string& bytes, const char* word) {
     const std::string bad = scratch.write(name, bytes);
@@ -94,24 +94,25 @@ TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
 TEST(SnapshotFiles, WhatCannotBeWrittenFailsTheRunAndCostsNoOlderFile) {
   const TestFolder scratch;
   const std::string file = scratch.file("a.snapshot");
-  ASSERT_EQ(sandlot(run + "--duration 0.1s --snapshot " + file).exit_code, 0);
+  ASSERT_EQ(sandlot(indoor_run + "--duration 0.1s --snapshot " + file).exit_code, 0);
   const std::string before = contents(file);
   // A limit on the size of files stands in for a full disk.
   const std::string line = "bash -c 'ulimit -f 2; trap \"\" XFSZ; exec " + std::string(SANDLOT_BIN) + " " +
-                           run + "--duration 0.2s --snapshot " + file + "' >" + scratch.file("out") + " 2>&1";
+                           indoor_run + "--duration 0.2s --snapshot " + file + "' >" + scratch.file("out") +
+                           " 2>&1";
   const int status = std::system(line.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(contents(scratch.file("out")), HasSubstr("cannot write '" + file + "'"));
   EXPECT_EQ(contents(file), before);
   EXPECT_THAT(names_in(scratch.path), ElementsAre("a.snapshot", "out")) << "no half file is left";
-  const Printed nowhere = sandlot(run + "--duration 0.1s --snapshot /nowhere/a.snapshot");
+  const Printed nowhere = sandlot(indoor_run + "--duration 0.1s --snapshot /nowhere/a.snapshot");
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_THAT(nowhere.out, HasSubstr("/nowhere/a.snapshot"));
 }
 
 TEST(SnapshotFiles, OptionsThatDoNotGoTogetherAreRefused) {
   const auto refused = [](const std::string& options, const char* word) {
-    const Printed printed = sandlot(run + options);
+    const Printed printed = sandlot(indoor_run + options);
     EXPECT_EQ(printed.exit_code, 2) << options;
     EXPECT_THAT(printed.out, HasSubstr(word)) << options;
   };

@@ -48,6 +48,22 @@ class Groups(unittest.TestCase):
             header = f"namespace {space} {{\nconstexpr int same = 1;\n}}  // namespace {space}\n"
             self.assertEqual(batches(h_h=header, a_cpp='#include "layer/h.h"\n', b_cpp=unnamed("int same() {\n  return 2;\n}")), [1, 1])
 
+    def test_a_macro_counts_while_it_is_defined(self):
+        body = "#define SAME 1\n"
+        self.assertEqual(batches(a_cpp=body, b_cpp=body), [1, 2])
+        self.assertEqual(batches(a_cpp=body + "#undef SAME\n", b_cpp=body), [1, 1])
+
+    def test_what_using_namespace_opens_keeps_apart(self):
+        header = "namespace sandlot::parts {\nint same();\n}  // namespace sandlot::parts\n"
+        for opened, expected in (("", [1, 1]), ("using namespace parts;\n", [1, 2])):
+            user = f'#include "layer/h.h"\nnamespace sandlot {{\n{opened}}}  // namespace sandlot\n'
+            self.assertEqual(batches(h_h=header, a_cpp=user, b_cpp=unnamed("int same() {\n  return 2;\n}")), expected, opened)
+
+    def test_lists_are_cut_into_even_parts(self):
+        long = {f"f{i}_cpp": "// line\n" * (unity_groups.MOST_LINES // 4) for i in range(6)}
+        self.assertEqual(batches(**long), [1, 1, 1, 2, 2, 2])
+        self.assertEqual(batches(a_cpp="// line\n" * (2 * unity_groups.MOST_LINES), b_cpp=""), [1, 2])
+
     def test_other_names_of_the_same_thing_go_together(self):
         for body in ("using test::same;", "using same = std::string;", "namespace same = std::filesystem;"):
             self.assertEqual(batches(a_cpp=unnamed(body), b_cpp=unnamed(body)), [1, 1], body)

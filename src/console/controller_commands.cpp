@@ -84,7 +84,7 @@ CommandResult list_controllers(CommandCall& call, std::span<const std::string> w
   return std::optional(text.empty() ? std::string("there are none") : text);
 }
 
-CommandResult load(CommandCall& call) {
+CommandResult load_controller(CommandCall& call) {
   if (call.words.size() < 3)
     return Error{"'controllers load' needs a name and a kind",
                  "controllers load ROBOT/NAME KIND {KEY: VALUE}, or a FILE.yaml"};
@@ -148,7 +148,7 @@ CommandResult cmd_controllers(CommandCall& call) {
   }
   if (!call.caller.may_steer) return Error{"this is for those who may steer; you may watch"};
   const std::string& act = call.words.front();
-  if (act == "load") return load(call);
+  if (act == "load") return load_controller(call);
   if (act == "start" || act == "stop") return switch_over(call);
   std::vector<PendingRequest> requests;
   for (const std::string& word : call.words.subspan(1)) {

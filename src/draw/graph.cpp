@@ -73,7 +73,7 @@ std::vector<int> layers_by(const std::vector<Edge>& edges, std::size_t count) {
   return layers;
 }
 
-std::vector<std::string> lines_of(const std::string& label) {
+std::vector<std::string> label_lines(const std::string& label) {
   std::vector<std::string> parts(1);
   for (const char c : label) {
     parts.back() += c;
@@ -89,7 +89,7 @@ std::vector<std::string> lines_of(const std::string& label) {
 }
 
 /// A node of the graph, or where a long edge passes a layer.
-struct Place {
+struct GraphPlace {
   std::size_t node = ~std::size_t{0};  ///< ~0: an edge passes
   std::vector<std::string> lines;
   double width = 14, height = 0;
@@ -98,7 +98,7 @@ struct Place {
 };
 
 struct Layout {
-  std::vector<Place> places;
+  std::vector<GraphPlace> places;
   std::vector<std::vector<std::size_t>> layers;  ///< places from left to right
   std::vector<std::vector<std::size_t>> ways;    ///< of each edge that leads down, its places
 };
@@ -107,13 +107,13 @@ Layout make_layout(const Graph& graph, const std::vector<Edge>& edges, const std
   Layout out;
   const int last = graph.nodes.empty() ? 0 : *std::max_element(layer.begin(), layer.end());
   out.layers.resize(static_cast<std::size_t>(last) + 1);
-  const auto put = [&](int at, Place place) {
+  const auto put = [&](int at, GraphPlace place) {
     out.places.push_back(std::move(place));
     out.layers[static_cast<std::size_t>(at)].push_back(out.places.size() - 1);
     return out.places.size() - 1;
   };
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    Place place{i, lines_of(graph.nodes[i].label)};
+    GraphPlace place{i, label_lines(graph.nodes[i].label)};
     std::size_t longest = 0;
     for (const std::string& line : place.lines) longest = std::max(longest, line.size());
     const bool round = graph.nodes[i].form == Graph::Form::ellipse;
@@ -222,7 +222,7 @@ std::string draw_graph(const Graph& graph) {
   auto& places = layout.places;
 
   double low = 0, high = 0, y = margin;
-  for (const Place& place : places)
+  for (const GraphPlace& place : places)
     low = std::min(low, place.x - place.width / 2), high = std::max(high, place.x + place.width / 2);
   std::vector<double> middle(places.size());
   for (const auto& layer : layout.layers) {
@@ -264,7 +264,7 @@ std::string draw_graph(const Graph& graph) {
                        middle[from], x0 + 40, middle[from], x1 + 40, middle[to], x1, middle[to], stroke);
   }
   for (std::size_t p = 0; p < graph.nodes.size(); ++p) {
-    const Place& place = places[p];
+    const GraphPlace& place = places[p];
     const Graph::Node& node = graph.nodes[p];
     const double x = place.x, at = middle[p];
     out += node.form == Graph::Form::ellipse

@@ -61,9 +61,9 @@ struct Open {
   int line;
 };
 
-class Parser {
+class SchemaParser {
  public:
-  Parser(std::deque<MessageInfo>& types, std::string_view type) : types_(types) {
+  SchemaParser(std::deque<MessageInfo>& types, std::string_view type) : types_(types) {
     types_.emplace_back().name = long_name(type);
     by_name_[short_name(type)] = &types_.front();
   }
@@ -311,7 +311,7 @@ class PathVisitor : public CdrVisitor {
 Result<DynamicSchema> DynamicSchema::parse(std::string_view type, std::string_view text) {
   if (!is_type_name(short_name(type))) return Error{shown(type) + " is not a name of a message type"};
   DynamicSchema schema;
-  SL_TRY(Parser(schema.types_, type).run(text));
+  SL_TRY(SchemaParser(schema.types_, type).run(text));
   schema.types_.front().schema = text;
   return schema;
 }

@@ -31,17 +31,17 @@ using programs::remote::Restart;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto beat = 20ms, measure_every = 40ms, look_every = 500ms, grace = 500ms;
+constexpr auto watch_beat = 20ms, measure_every = 40ms, look_every = 500ms, grace = 500ms;
 constexpr double first_pause_s = 0.1, longest_pause_s = 5, long_life_s = 10;
 constexpr int most_short_lives = 6;
-constexpr double lines_per_s = 50, lines_at_once = 200;
+constexpr double output_lines_per_s = 50, output_lines_at_once = 200;
 constexpr std::size_t most_files = 1000;
 constexpr double share_saved_s = 0.1;  ///< processor time that a program may save up, per core of its share
 
-double seconds_since(Clock::time_point then, Clock::time_point now) {
+double seconds_between(Clock::time_point then, Clock::time_point now) {
   return std::chrono::duration<double>(now - then).count();
 }
-Clock::duration seconds(double s) {
+Clock::duration duration_of(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
@@ -76,7 +76,7 @@ bool is_crash(int status) {
 }
 
 /// A program and its process. Of the watching thread, but for what never changes.
-struct Program {
+struct WatchedProgram {
   std::string path;  ///< "red1/controller"
   Place place;
   Restart rule = Restart::never;
@@ -96,7 +96,7 @@ struct Program {
 
   std::string last_note;
   programs::OutputFile output;
-  double lines_left = lines_at_once;
+  double lines_left = output_lines_at_once;
   std::uint64_t lines_left_out = 0;
   Clock::time_point lines_counted;
 
@@ -109,7 +109,7 @@ struct Program {
   void watch(bool expected, Clock::time_point now);
 };
 
-Status Program::begin() {
+Status WatchedProgram::begin() {
   start_at.reset();
   child.reset();
   SL_ASSIGN(const programs::Launch command, programs::launch_of(launch));
@@ -124,7 +124,7 @@ Status Program::begin() {
   return {};
 }
 
-void Program::write_line(const std::string& line, bool is_error) {
+void WatchedProgram::write_line(const std::string& line, bool is_error) {
   output.write(line);
   if (is_error && !line.empty()) last_note = line;
   if (lines_left < 1) {
@@ -136,10 +136,11 @@ void Program::write_line(const std::string& line, bool is_error) {
   else log::info(path + ": " + line);
 }
 
-void Program::read_output(Clock::time_point now) {
-  lines_left = std::min(lines_at_once, lines_left + lines_per_s * seconds_since(lines_counted, now));
+void WatchedProgram::read_output(Clock::time_point now) {
+  lines_left = std::min(output_lines_at_once,
+                        lines_left + output_lines_per_s * seconds_between(lines_counted, now));
   lines_counted = now;
-  if (lines_left_out > 0 && lines_left >= lines_at_once / 2)
+  if (lines_left_out > 0 && lines_left >= output_lines_at_once / 2)
     log::warning(fmt::format("{}: {} more lines were left out here", path, std::exchange(lines_left_out, 0)));
   child->move();
   while (const auto line = child->take_line()) write_line(*line, false);
@@ -147,11 +148,11 @@ void Program::read_output(Clock::time_point now) {
 }
 
 /// Holds it to its share of a processor, and to its memory.
-void Program::measure(Clock::time_point now) {
+void WatchedProgram::measure(Clock::time_point now) {
   if (now < measured + measure_every) return;
   const programs::Budget& budget = launch.budget;
   const auto used = meter.sample(child->process());
-  balance_s += budget.cpu * seconds_since(measured, now) - used.cpu_s;
+  balance_s += budget.cpu * seconds_between(measured, now) - used.cpu_s;
   balance_s = std::min(balance_s, share_saved_s * budget.cpu);
   measured = now;
   if (static_cast<double>(used.memory_bytes) > budget.memory_bytes) {
@@ -166,17 +167,19 @@ void Program::measure(Clock::time_point now) {
   halted = balance_s < 0;
 }
 
-std::string Program::text_of_end(const std::string& how) const { return "program '" + path + "' " + how; }
+std::string WatchedProgram::text_of_end(const std::string& how) const {
+  return "program '" + path + "' " + how;
+}
 
 /// The process is no more: it is started again, or the run no longer waits for it.
-void Program::end(const std::string& how, bool success, Clock::time_point now) {
+void WatchedProgram::end(const std::string& how, bool success, Clock::time_point now) {
   std::string text = text_of_end(how);
   if (!success && !last_note.empty()) text += "; last line of its standard error: " + last_note;
   const bool again = rule == Restart::on_exit || (rule == Restart::on_failure && !success);
-  if (seconds_since(started, now) > long_life_s) short_lives = 0;
+  if (seconds_between(started, now) > long_life_s) short_lives = 0;
   if (again && ++short_lives < most_short_lives) {
     const double pause_s = std::min(longest_pause_s, first_pause_s * (1 << (short_lives - 1)));
-    start_at = now + seconds(pause_s);
+    start_at = now + duration_of(pause_s);
     log::warning(text + "; it is started again in " + number_text(pause_s) + " s");
     return;
   }
@@ -186,7 +189,7 @@ void Program::end(const std::string& how, bool success, Clock::time_point now) {
   link->give_up();
 }
 
-void Program::watch(bool expected, Clock::time_point now) {
+void WatchedProgram::watch(bool expected, Clock::time_point now) {
   if (child) {
     read_output(now);
     if (const auto status = child->exit_status()) {
@@ -210,7 +213,7 @@ void Program::watch(bool expected, Clock::time_point now) {
 
 struct Processes::Impl {
   ProgramOptions options;
-  std::vector<std::unique_ptr<Program>> programs;
+  std::vector<std::unique_ptr<WatchedProgram>> programs;
   Clock::time_point looked;
 
   std::mutex mutex;
@@ -237,7 +240,7 @@ void Processes::Impl::run(std::promise<Status> started) {
   std::optional<Clock::time_point> last_moment;
   std::unique_lock lock(mutex);
   while (true) {
-    changed.wait_for(lock, beat, [&] { return !wanted.empty(); });
+    changed.wait_for(lock, watch_beat, [&] { return !wanted.empty(); });
     const std::set<std::string> again = std::exchange(wanted, {});
     const bool expected = ending || stopping;
     if (stopping && !last_moment) last_moment = Clock::now() + grace;
@@ -292,7 +295,7 @@ Result<std::unique_ptr<Processes>> Processes::create(Simulation& simulation, con
   const auto add = [&](const SimulationParts::ProgramEntry& entry,
                        const programs::remote::Remote& remote) -> Status {
     const programs::remote::Spec& spec = remote.spec();
-    auto made = std::make_unique<Program>();
+    auto made = std::make_unique<WatchedProgram>();
     made->path = entry.path;
     made->place = entry.decl.place;
     made->rule = spec.restart;

@@ -52,8 +52,8 @@ struct Pending {
   std::size_t interval = 0;
 };
 
-std::vector<TimerErrors> errors_of(const std::vector<Average>& planned,
-                                   const std::vector<Average>& adapting) {
+std::vector<TimerErrors> timer_errors(const std::vector<Average>& planned,
+                                      const std::vector<Average>& adapting) {
   std::vector<TimerErrors> out;
   for (std::size_t i = 0; i < planned.size(); ++i)
     out.push_back({planned[i].value(), adapting[i].value(), adapting[i].count});
@@ -156,7 +156,7 @@ std::vector<TimerErrors> timer_errors(const Stretch& stretch, std::span<const do
     first = last;
     fire(begin, end);
   }
-  return errors_of(planned, adapting);
+  return timer_errors(planned, adapting);
 }
 
 std::vector<TimerErrors> fixed_window_errors(const Stretch& stretch, std::size_t window, Mean mean,
@@ -194,7 +194,7 @@ std::vector<TimerErrors> fixed_window_errors(const Stretch& stretch, std::size_t
       if (const auto error = miss(std::min(expected(before, target_s), end))) adapting[k].add(*error);
     }
   }
-  return errors_of(planned, adapting);
+  return timer_errors(planned, adapting);
 }
 
 }  // namespace sandlot::app

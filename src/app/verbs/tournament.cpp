@@ -84,9 +84,9 @@ Result<std::string> options_of(const MatchSpec& match) {
 }
 
 /// What a team depends on outside its folder, as far as its team.yaml names it.
-class Outside {
+class OutsideFolder {
  public:
-  explicit Outside(const std::string& folder) : folder_(fs::weakly_canonical(folder, ignored_)) {}
+  explicit OutsideFolder(const std::string& folder) : folder_(fs::weakly_canonical(folder, ignored_)) {}
 
   /// @param base  folder that names are relative to
   void look_at(const Node& node, const fs::path& base) {
@@ -139,7 +139,7 @@ Result<std::string> team_content(const formats::TeamSoftware& software, const st
   SL_ASSIGN(std::string content, tournament::content_of(folder));
   SL_ASSIGN(const std::string text, read_text_file(software.file, TextLimits{}.max_bytes));
   SL_ASSIGN(const Node root, parse_yaml(text, software.file));
-  Outside outside(folder);
+  OutsideFolder outside(folder);
   outside.look_at(root, folder);
   return outside.add_to(std::move(content));
 }

@@ -71,9 +71,9 @@ struct Accessor {
   }
 };
 
-class Reader {
+class GltfReader {
  public:
-  Reader(const Json& document, std::string_view binary, Builder& out, Diagnostics& diagnostics)
+  GltfReader(const Json& document, std::string_view binary, Builder& out, Diagnostics& diagnostics)
       : json_(document), binary_(binary), out_(out), diagnostics_(diagnostics) {}
 
   Status read() {
@@ -378,7 +378,7 @@ Status read_gltf(std::string_view bytes, Builder& out, Diagnostics& diagnostics)
   const Json document = Json::parse(text, nullptr, false);
   if (document.is_discarded() || !document.is_object())
     return out.error("is not a glTF file: its JSON part is broken", "the file is cut off or damaged");
-  return Reader(document, binary, out, diagnostics).read();
+  return GltfReader(document, binary, out, diagnostics).read();
 }
 
 }  // namespace sandlot::assets::mesh

@@ -11,13 +11,13 @@
 namespace sandlot::formats {
 namespace {
 
-Result<Scenario> parse(std::string_view text, std::vector<Override> overrides = {}) {
+Result<Scenario> scenario_of_text(std::string_view text, std::vector<Override> overrides = {}) {
   Diagnostics diagnostics;
   return parse_scenario(text, "dir/s.yaml", overrides, diagnostics);
 }
 
 std::string error_of(std::string_view text, std::vector<Override> overrides = {}) {
-  const auto result = parse(text, std::move(overrides));
+  const auto result = scenario_of_text(text, std::move(overrides));
   return result ? "" : result.error().text();
 }
 
@@ -39,7 +39,7 @@ robots:
 )";
 
 TEST(Scenario, ReadsPropertiesWithTheirUnits) {
-  const auto s = parse(
+  const auto s = scenario_of_text(
       "version: 1\nrobots:\n- {name: a, model: m.sdf, properties: {fuel: {value: 500 g, unit: kg, max: 10}, "
       "points: 3}}\n"
       "things: [{name: b, model: m.sdf, properties: {food: 1}}]\n");
@@ -54,7 +54,7 @@ TEST(Scenario, ReadsPropertiesWithTheirUnits) {
 }
 
 TEST(Scenario, ReadsTheWholeForm) {
-  const auto s = parse(indoor);
+  const auto s = scenario_of_text(indoor);
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->setup.name, "indoor");
   EXPECT_EQ(s->world, "../worlds/indoor.sdf");
@@ -84,7 +84,7 @@ TEST(Scenario, ReadsTheWholeForm) {
 }
 
 TEST(Scenario, LeavesDefaultsWhereNothingIsSaid) {
-  const auto s = parse("version: 1\n");
+  const auto s = scenario_of_text("version: 1\n");
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->setup.engine, "rigid");
   EXPECT_EQ(s->world, "");
@@ -93,7 +93,7 @@ TEST(Scenario, LeavesDefaultsWhereNothingIsSaid) {
 }
 
 TEST(Scenario, PlacesGroups) {
-  const auto s = parse(R"(version: 1
+  const auto s = scenario_of_text(R"(version: 1
 robots:
   - {name: a, model: m, count: 9, distribution: {grid: {centre: [1, 2, 3], spacing: 50 cm}}}
   - {name: b, model: m, count: 3, distribution: {uniform: {width: 4, height: 5, clearance: 0.3}}}
@@ -117,15 +117,15 @@ robots:
 }
 
 TEST(Scenario, SetReachesVariablesAndPlaces) {
-  const auto s = parse(indoor, {{"speed", "0.9"},
-                                {"vars.beams", "5"},
-                                {"robots.count", "1"},
-                                {"robots[0].devices.laser.fov", "90 deg"},
-                                {"robots.devices.sonar.kind", "sonar"},
-                                {"robots.controller.turn", "[1, 2]"},
-                                {"physics", "planar"},
-                                {"time.stop", "5"},
-                                {"seed", "42"}});
+  const auto s = scenario_of_text(indoor, {{"speed", "0.9"},
+                                           {"vars.beams", "5"},
+                                           {"robots.count", "1"},
+                                           {"robots[0].devices.laser.fov", "90 deg"},
+                                           {"robots.devices.sonar.kind", "sonar"},
+                                           {"robots.controller.turn", "[1, 2]"},
+                                           {"physics", "planar"},
+                                           {"time.stop", "5"},
+                                           {"seed", "42"}});
   ASSERT_TRUE(s) << s.error().text();
   const RobotGroup& robot = s->robots[0];
   EXPECT_EQ(robot.instance.controllers[0].config.find("speed")->text(), "0.9");
@@ -141,8 +141,9 @@ TEST(Scenario, SetReachesVariablesAndPlaces) {
 }
 
 TEST(Scenario, SetLengthensShortForms) {
-  const auto s = parse("version: 1\nphysics: planar\nrobots: [{name: a, model: m, controller: wander}]",
-                       {{"physics.grid", "3"}, {"robots.controller.speed", "2"}});
+  const auto s = scenario_of_text(
+      "version: 1\nphysics: planar\nrobots: [{name: a, model: m, controller: wander}]",
+      {{"physics.grid", "3"}, {"robots.controller.speed", "2"}});
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->setup.engine, "planar");
   EXPECT_EQ(s->setup.physics.find("grid")->text(), "3");
@@ -179,11 +180,11 @@ TEST(Scenario, SetFindsElementsOfListsByName) {
       "version: 1\nrobots:\n  - {name: front, model: m}\n  - {name: rear, model: m, modules: [{id: eye, "
       "model: "
       "e}, {id: ear, model: f}]}\nthings: [{name: ball, model: b}]\nevents: [{name: late, when: t}]\n";
-  const auto s = parse(text, {{"robots.rear.count", "3"},
-                              {"robots.rear.controller.kind", "wander"},
-                              {"robots.rear.modules.ear.model", "g"},
-                              {"things.ball.label", "round"},
-                              {"events.late.when", "t > 2"}});
+  const auto s = scenario_of_text(text, {{"robots.rear.count", "3"},
+                                         {"robots.rear.controller.kind", "wander"},
+                                         {"robots.rear.modules.ear.model", "g"},
+                                         {"things.ball.label", "round"},
+                                         {"events.late.when", "t > 2"}});
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->robots[0].count, 1);
   EXPECT_EQ(s->robots[1].count, 3);
@@ -197,7 +198,7 @@ TEST(Scenario, SetFindsElementsOfListsByName) {
 }
 
 TEST(Scenario, VariablesMayUseEachOtherButNotThemselves) {
-  const auto s = parse("version: 1\nname: ${c}-x\nvars: {a: 2, b: \"${a}0\", c: \"n${b}\"}\n");
+  const auto s = scenario_of_text("version: 1\nname: ${c}-x\nvars: {a: 2, b: \"${a}0\", c: \"n${b}\"}\n");
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->setup.name, "n20-x");
   EXPECT_EQ(error_of("version: 1\nvars: {a: \"${b}\", b: \"${a}\"}\n"),
@@ -213,10 +214,10 @@ TEST(Scenario, AVariableMayChooseAmongTheEntriesOfAnother) {
   const std::string text =
       "version: 1\nname: ${of[level]}-${ of [ level ] }\nvars: {level: image, of: {image: \"${low}\", world: "
       "pose}, low: ranges}\n";
-  const auto s = parse(text);
+  const auto s = scenario_of_text(text);
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->setup.name, "ranges-ranges");
-  const auto high = parse(text, {{"level", "world"}});
+  const auto high = scenario_of_text(text, {{"level", "world"}});
   ASSERT_TRUE(high) << high.error().text();
   EXPECT_EQ(high->setup.name, "pose-pose");
   EXPECT_EQ(error_of(text, {{"level", "imge"}}),
@@ -278,7 +279,7 @@ TEST(Scenario, IncludesLieBelowTheIncludingFile) {
 }
 
 TEST(Scenario, ZonesOfTheGround) {
-  const auto s = parse(R"(version: 1
+  const auto s = scenario_of_text(R"(version: 1
 ground_zones:
   - {name: ice, polygon: [[0, 0], [200 cm, 0], [0, 3]], friction: 0.05}
   - {name: belt, centre: [1, 2], radius: 0.5, substance: rubber(20), belt_velocity: [0.7, 0], rolling_resistance: 2 mm}
@@ -351,7 +352,7 @@ TEST(Scenario, ElementsOfTheWorldHaveAKindAndANameOfTheirOwn) {
 }
 
 TEST(Scenario, SaysToOtherProgramsWhatThereIs) {
-  const auto s = parse(
+  const auto s = scenario_of_text(
       "version: 1\nrobots: [{name: r, model: m, category: human, description: walks, tags: [tall, slow]}]\n"
       "things: [{name: t, model: m, tags: red}]\n"
       "poses:\n"
@@ -375,7 +376,7 @@ TEST(Scenario, SaysToOtherProgramsWhatThereIs) {
   ASSERT_EQ(sharing.topics.size(), 2u);
   EXPECT_EQ(sharing.topics[1].place.line, 7);
   EXPECT_TRUE(sharing.has("/r/laser/ranges") && sharing.has("/t/x/y") && !sharing.has("/r/laser/range"));
-  EXPECT_EQ(parse("version: 1\n")->setup.sharing.spectators, model::Sharing::Spectators::world);
+  EXPECT_EQ(scenario_of_text("version: 1\n")->setup.sharing.spectators, model::Sharing::Spectators::world);
 }
 
 TEST(Scenario, SchemaFollowsFromTheFieldLists) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t max_waypoints = 1'000'000;
 
-Xml element(const Place& place, const char* name, std::vector<Xml> children) {
+Xml placed_element(const Place& place, const char* name, std::vector<Xml> children) {
   return {name, {}, "", std::move(children), place};
 }
 Xml text(const Place& place, const char* name, const char* value) { return {name, {}, value, {}, place}; }
@@ -43,16 +43,17 @@ void stand_in_for_actor(Xml& actor) {
   if (actor.child("link")) return;
   const Place& at = actor.place;
   const auto part = [&](const char* name) {
-    Xml out = element(at, name, {});
+    Xml out = placed_element(at, name, {});
     out.attributes = {{"name", "body"}};
     out.children.push_back(text(at, "pose", walks_on_hips(actor) ? "0 0 -0.1 0 0 0" : "0 0 0.9 0 0 0"));
-    out.children.push_back(element(
-        at, "geometry", {element(at, "capsule", {text(at, "radius", "0.25"), text(at, "length", "1.3")})}));
+    out.children.push_back(placed_element(
+        at, "geometry",
+        {placed_element(at, "capsule", {text(at, "radius", "0.25"), text(at, "length", "1.3")})}));
     return out;
   };
-  Xml inertial = element(at, "inertial", {});
+  Xml inertial = placed_element(at, "inertial", {});
   inertial.attributes = {{"auto", "true"}};
-  Xml link = element(at, "link", {std::move(inertial), part("collision"), part("visual")});
+  Xml link = placed_element(at, "link", {std::move(inertial), part("collision"), part("visual")});
   link.attributes = {{"name", "person"}};
   actor.children.push_back(std::move(link));
 }

@@ -33,7 +33,7 @@ model::RollerWheel rollers_of(double angle_rad) {
 }
 
 /// A disc of 10 kg on wheels; the joint of wheel k is number k.
-model::Model robot_model(const std::vector<Mount>& mounts) {
+model::Model wheels_model(const std::vector<Mount>& mounts) {
   model::Model m;
   m.links.push_back(link_of("base", Cylinder{0.15, 0.06}, 10));
   for (const Mount& mount : mounts) {
@@ -87,7 +87,7 @@ struct Rig : World {
       const Pose& X_WM = {{0, 0, R + 0.02}, {}}, Vec3 gravity = {0, 0, -9.81})
       : World(rigid::engine, {}, gravity), mounts(wheels), h(h_s) {
     add(floor);
-    const model::Instance instance = instance_of("robot", robot_model(wheels), X_WM, true);
+    const model::Instance instance = instance_of("robot", wheels_model(wheels), X_WM, true);
     model = instance.model;
     robot = add(instance);
     put_on_rollers(on_rollers);
@@ -212,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(Grounds, OnGround, testing::Range(0, 4));
 
 TEST(Wheels, LighterThanTheSpinOfTheirRollersAreRefused) {
   for (const double spin : {1e-6, 1.0}) {  // about their axes alone: no body has such a tensor
-    model::Model m = robot_model({omni_mounts()[0]});
+    model::Model m = wheels_model({omni_mounts()[0]});
     for (std::size_t l = 2; l < m.links.size(); ++l) m.links[l].inertial.moments = {1e-9, 1e-9, spin};
     auto groups = group_links(m);
     ASSERT_TRUE(groups);
@@ -230,7 +230,7 @@ TEST(Wheels, WorkUpsideDownAsTheyDoUpright) {
     const bool flipped = w == &down;
     w->add(static_of("floor", Plane{{0, 0, 1}}, {{}, flipped ? over : Quat{}}));
     const InstanceId robot = w->add(
-        instance_of("robot", robot_model(omni_mounts()),
+        instance_of("robot", wheels_model(omni_mounts()),
                     {{0, 0, flipped ? -R - 0.02 : R + 0.02}, flipped ? over : Quat{}}, true));
     for (std::size_t k = 0; k < 3; ++k) {
       const WheelTarget t{w->engine->joints(robot)[k], true};
@@ -402,7 +402,7 @@ TEST(Wheels, ABallTurnsARoller) {
 TEST(Wheels, DoNotDependOnOtherRobots) {
   Rig alone(omni_mounts(), true, 1e-3), beside(omni_mounts(), true, 1e-3);
   const InstanceId far = beside.add(
-      instance_of("far", robot_model(mecanum_mounts()), {{5, 5, R + 0.02}, {}}, true));
+      instance_of("far", wheels_model(mecanum_mounts()), {{5, 5, R + 0.02}, {}}, true));
   const WheelTarget t{beside.engine->joints(far)[0], true};
   beside.engine->set_wheels(std::span(&t, 1));
   for (Rig* rig : {&alone, &beside}) {

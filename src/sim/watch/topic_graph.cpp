@@ -9,7 +9,7 @@ namespace sandlot {
 namespace {
 
 using Device = Simulation::Device;
-using Program = Simulation::ProgramEntry;
+using GraphProgram = Simulation::ProgramEntry;
 
 class GraphBuilder {
  public:
@@ -52,13 +52,13 @@ class GraphBuilder {
       if (slot.level >= levels || (device.levels >> slot.level & 1))
         link(topic(*slot.topic).publishers, node);
   }
-  void add_program(const Program& program) {
+  void add_program(const GraphProgram& program) {
     const std::size_t node = add_node(program.path, program.decl.kind, true);
     if (!program.outputs) return;
     for (const Outputs::Output& output : program.outputs->all()) link(topic(*output.topic).publishers, node);
     for (const Outputs::Input& input : program.outputs->inputs()) link(topic(*input.topic).readers, node);
   }
-  void connect(const Program& program) {
+  void connect(const GraphProgram& program) {
     const std::size_t node = nodes_.at(program.path);
     for (const std::uint32_t reading : program.reads)
       if (reading < program.topics.size() && program.topics[reading])

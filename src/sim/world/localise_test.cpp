@@ -19,7 +19,7 @@ model::Setup flat(std::uint64_t seed) {
   return std::move(*setup);
 }
 
-double value(const Simulation& simulation, const std::string& name) {
+double filter_value(const Simulation& simulation, const std::string& name) {
   auto found = NamedValue::find(simulation, name);
   EXPECT_TRUE(found) << name;
   return found ? found->read().value_or(NAN) : NAN;
@@ -45,7 +45,7 @@ TEST(LocaliseInAWorld, GoesOnFromASnapshotToTheBitOnOneAndMoreThreads) {
   advance(*whole, 333);
   const auto one = again(*whole), three = again(*whole, {.threads = 3});
   advance(*whole, 500), advance(*one, 500), advance(*three, 500);
-  EXPECT_GT(value(*whole, "rover/localiser.filter.counts[0]"), 5) << "scans were used";
+  EXPECT_GT(filter_value(*whole, "rover/localiser.filter.counts[0]"), 5) << "scans were used";
   EXPECT_EQ(one->state_hash(), whole->state_hash());
   EXPECT_EQ(three->state_hash(), whole->state_hash());
   EXPECT_EQ(by_path(*one), by_path(*whole));
@@ -100,7 +100,7 @@ TEST(SlowLocaliseInAWorld, FindsAKidnappedRobot) {
     EXPECT_GT(errors(*simulation).position_m, 1) << "it does not know yet";
     advance(*simulation, 9000);
     is_found();
-    EXPECT_GT(value(*simulation, "rover/localiser.filter.injected"), 0)
+    EXPECT_GT(filter_value(*simulation, "rover/localiser.filter.injected"), 0)
         << "by particles from all over the map";
   }
 }

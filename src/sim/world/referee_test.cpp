@@ -59,7 +59,7 @@ std::vector<TimedWord> words_of(const std::string& file) {
   return out;
 }
 
-void say(Simulation& simulation, const msg::RefereeCommand& command) {
+void give_word(Simulation& simulation, const msg::RefereeCommand& command) {
   simulation.submit(CommandRequest{"rules/referee", msg::RefereeCommand::ros_type, command_bytes(command)});
 }
 
@@ -93,7 +93,7 @@ std::string run(Simulation& simulation, Log log = {}, std::vector<TimedWord> wor
   log.look(simulation);  // rules judge the beginning, too
   while (!simulation.stop_reason()) {
     for (; !words.empty() && words.front().time_s <= simulation.now().s(); words.erase(words.begin()))
-      say(simulation, words.front().command);
+      give_word(simulation, words.front().command);
     const Status status = simulation.tick();
     if (!status) return status.error().text();
     log.look(simulation);
@@ -138,7 +138,7 @@ void say_word(Simulation& simulation, const std::string& word, const std::string
   command.command = word;
   command.team = team;
   command.robot = robot;
-  say(simulation, command);
+  give_word(simulation, command);
 }
 
 TEST(RefereeRule, AWordOfAPersonReachesTheGameAndTheRobots) {

@@ -27,7 +27,7 @@ Result<const Kind*> find_kind(const model::ElementDecl& decl, std::span<const Ki
                suggestion(decl.kind, names), decl.place};
 }
 
-Status check_names(std::span<const model::ElementDecl> declared, const char* list) {
+Status check_element_names(std::span<const model::ElementDecl> declared, const char* list) {
   std::set<std::string> names;
   for (const model::ElementDecl& decl : declared) {
     if (decl.name.empty()) return Error{"the name is empty", "", decl.place};
@@ -154,9 +154,9 @@ Status WorldElements::build(const SimulationOptions& options, bool restored,
   if (setup.criterion) before.emplace_back("criterion");
   for (const model::TeamDecl& team : setup.teams)
     if (team.criterion) before.push_back(team.name + ".criterion");
-  SL_TRY(check_names(setup.markers, "markers"));
-  SL_TRY(check_names(setup.media, "media"));
-  SL_TRY(check_names(setup.rules, "rules"));
+  SL_TRY(check_element_names(setup.markers, "markers"));
+  SL_TRY(check_element_names(setup.media, "media"));
+  SL_TRY(check_element_names(setup.rules, "rules"));
   ElementBuild::Made made;  // of the element that was made last
   const auto init = [&](const char* list, auto& element, const model::ElementDecl& decl) -> Status {
     const Build build(decl, std::string(list) + "/" + sanitised(decl.name), *this, restored, before,

@@ -322,7 +322,7 @@ void transmit(Simulation& simulation, const std::string& text, const char* devic
 }
 
 /// The world up to tick `ticks`, with a word and a kick now and then.
-void play(Simulation& simulation, std::uint64_t until) {
+void play_elements(Simulation& simulation, std::uint64_t until) {
   while (simulation.tick_index() < until) {
     const std::uint64_t tick = simulation.tick_index();
     if (tick % 10 == 3) say(simulation, "at " + std::to_string(tick), "rover1");
@@ -335,7 +335,7 @@ void play(Simulation& simulation, std::uint64_t until) {
 
 TEST(WorldElements, GoOnFromASnapshotInAnyNumberOfThreads) {
   const auto whole = build(everything());
-  play(*whole, 75);
+  play_elements(*whole, 75);
   ASSERT_GT(value(*whole, "rules/goals.scored[0]"), 0);
   ASSERT_GT(value(*whole, "media/air.words"), 0);
   ASSERT_GT(value(*whole, "media/ether.delivered"), 3);
@@ -344,14 +344,14 @@ TEST(WorldElements, GoOnFromASnapshotInAnyNumberOfThreads) {
   ASSERT_GT(value(*whole, "/rover1/referee/state.commands"), 1);
   for (const std::uint64_t at : {24u, 33u, 48u}) {
     const auto first = build(everything());
-    play(*first, at);
+    play_elements(*first, at);
     const std::vector<std::byte> snapshot = first->snapshot();
     for (const int threads : {1, 2, 4}) {
       Diagnostics diagnostics;
       auto second = Simulation::restore(snapshot, {.threads = threads}, diagnostics);
       ASSERT_TRUE(second) << second.error().text();
       EXPECT_EQ((*second)->state_hash(), first->state_hash()) << at;
-      play(**second, 75);
+      play_elements(**second, 75);
       EXPECT_EQ((*second)->state_hash(), whole->state_hash()) << at << ", " << threads << " threads";
     }
   }
@@ -378,7 +378,7 @@ TEST(WorldElements, ATickThatWasJudgedIsNotJudgedAgainByARestore) {
 
 TEST(WorldElements, AreRestoredWhenWhatTheyNameIsGone) {
   const auto simulation = build(everything());
-  play(*simulation, 30);
+  play_elements(*simulation, 30);
   simulation->submit(DeleteRequest{"ball"});
   advance(*simulation, 1);
   Diagnostics diagnostics;

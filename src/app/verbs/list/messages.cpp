@@ -6,7 +6,7 @@
 
 namespace sandlot::app {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -29,8 +29,8 @@ void print_members(const MessageInfo& type) {
 
 bool is_side_of_service(const MessageInfo& type) { return type.name.find("/srv/") != std::string::npos; }
 
-Json message_json(const MessageInfo& type) {
-  Json constants = Json::array(), fields = Json::array();
+OrderedJson message_json(const MessageInfo& type) {
+  OrderedJson constants = OrderedJson::array(), fields = OrderedJson::array();
   for (const MessageConstant& constant : type.constants)
     constants.push_back(
         {{"name", constant.name}, {"type", name_of(constant.type)}, {"value", constant.value}});
@@ -83,8 +83,8 @@ void print_messages(const Types& types, bool verbose) {
   }
 }
 
-Json messages_json(const Types& chosen) {
-  Json types = Json::array(), services = Json::array();
+OrderedJson messages_json(const Types& chosen) {
+  OrderedJson types = OrderedJson::array(), services = OrderedJson::array();
   for (const MessageInfo* const type : chosen.messages) types.push_back(message_json(*type));
   for (const ServiceInfo& service : chosen.services)
     services.push_back({{"name", service.name},
