@@ -171,7 +171,9 @@ Status Spec::check(const Node& node, const std::string& path) const {
                       path);
   if (sensors.size() > 32) return node.error("there are too many sensors", "at most 32", path + "/sensors");
   if (slots() > ExtraStates::most_slots)
-    return node.error("there are too many differential sensors", "at most 5", path + "/sensors");
+    return node.error("there are too many differential sensors",
+                      "at most 6, one less with a receiver, and one less for each that has scale deviations",
+                      path + "/sensors");
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::string at = path + "/sensors/" + std::to_string(i);
     for (std::size_t j = 0; j < i; ++j)
@@ -199,7 +201,18 @@ std::optional<std::size_t> Spec::datum_slot() const {
   return std::nullopt;
 }
 
-std::size_t Spec::slots() const { return clone_slot(sensors.size()) + (datum_slot() ? 1 : 0); }
+std::optional<std::size_t> Spec::scale_slot(std::size_t sensor) const {
+  if (!sensors[sensor].scaled()) return std::nullopt;
+  std::size_t slot = clone_slot(sensors.size()) + (datum_slot() ? 1 : 0);
+  for (std::size_t i = 0; i < sensor; ++i) slot += sensors[i].scaled();
+  return slot;
+}
+
+std::size_t Spec::slots() const {
+  std::size_t slots = clone_slot(sensors.size()) + (datum_slot() ? 1 : 0);
+  for (const Sensor& each : sensors) slots += each.scaled();
+  return slots;
+}
 
 Result<State> begin(const Spec& spec) {
   for (std::size_t i = 0; i < spec.sensors.size(); ++i)

@@ -73,6 +73,8 @@ struct Spec {
   Status check(const Node& node, const std::string& path) const;
   /// Slot of a sensor's earlier pose (extra_states.h).
   std::size_t clone_slot(std::size_t sensor) const;
+  /// Slot of a sensor's relative errors of way and turn, or none: it has none.
+  std::optional<std::size_t> scale_slot(std::size_t sensor) const;
   /// Slot of the datum's place, or none: it is given, or there is no receiver.
   std::optional<std::size_t> datum_slot() const;
   std::size_t slots() const;

@@ -34,7 +34,13 @@ Processed compare_movement(const Spec& spec, Core& core, const Sample& sample, c
   const Pose X_WA = pose_from_rpy({a[0], a[1], a[2]}, {a[3], a[4], a[5]}),
              X_WB = pose_from_rpy({b[X], b[Y], b[Z]}, {b[Roll], b[Pitch], b[Yaw]});
   const Vec3 way_W = X_WB.p - X_WA.p, way_A = rotate_inverse(X_WA.q, way_W);
-  const Vec3 turn_A = turn_vector(moved.X_AB.q * conjugate(conjugate(X_WA.q) * X_WB.q));
+  const Quat q_AB = conjugate(X_WA.q) * X_WB.q;
+  // What a sensor with relative errors measures: (1 + s) way, (1 + t) turn. Turns of one difference are small.
+  const auto scale = spec.scale_slot(sample.sensor);
+  const double* relative = scale ? &core.extra.x[*scale * ExtraStates::per_slot] : nullptr;
+  const double way_scale = relative ? 1 + relative[0] : 1, turn_scale = relative ? 1 + relative[1] : 1;
+  const Vec3 turn_AB = scale ? turn_vector(q_AB) : Vec3{};
+  const Vec3 turn_A = turn_vector(moved.X_AB.q * conjugate(q_AB)) - (turn_scale - 1) * turn_AB;
   const auto turns_a = turns_by_angles(a[4], a[5]), turns_b = turns_by_angles(b[Pitch], b[Yaw]);
   std::array<Vec3, 3> by_place, by_a, by_b, by_a_way;  // columns of R_A^T, and of it times the turns of both
   for (std::size_t k = 0; k < 3; ++k) {
@@ -55,10 +61,15 @@ Processed compare_movement(const Spec& spec, Core& core, const Sample& sample, c
     auto& H = measurement.H[measurement.count];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t place = ExtraStates::column(slot, k), angle = ExtraStates::column(slot, 3 + k);
-      if (i < 3) H[X + k] = by_place[k][i], H[place] = -by_place[k][i], H[angle] = by_a_way[k][i];
-      else H[Roll + k] = by_b[k][i - 3], H[angle] = -by_a[k][i - 3];
+      if (i < 3) {
+        H[X + k] = way_scale * by_place[k][i], H[place] = -way_scale * by_place[k][i];
+        H[angle] = way_scale * by_a_way[k][i];
+      } else {
+        H[Roll + k] = turn_scale * by_b[k][i - 3], H[angle] = -turn_scale * by_a[k][i - 3];
+      }
     }
-    measurement.y[measurement.count] = i < 3 ? moved.X_AB.p[i] - way_A[i] : turn_A[i - 3];
+    if (scale) H[ExtraStates::column(*scale, i < 3 ? 0 : 1)] = i < 3 ? way_A[i] : turn_AB[i - 3];
+    measurement.y[measurement.count] = i < 3 ? moved.X_AB.p[i] - way_scale * way_A[i] : turn_A[i - 3];
     taken[measurement.count++] = i;
   }
   const std::size_t m = measurement.count;
@@ -245,6 +256,14 @@ Core first_core(const Spec& spec) {
   }
   wrap_angles(core.x);
   core.memories.resize(spec.sensors.size());
+  for (std::size_t s = 0; s < spec.sensors.size(); ++s) {
+    const Sensor& sensor = spec.sensors[s];
+    const auto slot = spec.scale_slot(s);
+    if (!slot) continue;
+    const double deviations[] = {sensor.way_scale_deviation, sensor.turn_scale_deviation};
+    for (std::size_t i = 0; i < 2; ++i)
+      core.extra.row(*slot, i)[ExtraStates::column(*slot, i)] = deviations[i] * deviations[i];
+  }
   return core;
 }
 

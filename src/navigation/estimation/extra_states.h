@@ -1,6 +1,7 @@
 #pragma once
-/// States that the filter estimates beside its 15 (ekf_model.h), in slots of six: poses of base_link at earlier times, from
-/// which differences are measured, and an offset of three numbers, of the datum. They stand still; what they share with the 15
+/// States that the filter estimates in addition to its 15 (ekf_model.h), in slots of six: poses of base_link at earlier times, from
+/// which differences are measured, an offset of three numbers, of the datum, and relative errors of way and turn, two numbers for
+/// each sensor that has them. They stand still; what they share with the 15
 /// and with each other is their covariance, by which each measurement corrects all of them.
 ///
 /// Layout     of the joint covariance and of H: columns 0 to 14 are the state, component i of slot s is column 16 + 8 s + i.
@@ -41,7 +42,7 @@ struct ExtraStates {
   static void fields(auto& s, auto&& visit) {
     visit(Field{"x", "",
                 "Six numbers for each pose that differences count from, three and three unused ones for the "
-                "datum."},
+                "datum, relative errors of way and turn and four unused ones for a sensor that has them."},
           s.x);
     visit(Field{"covariance", "", "Their covariance with the state and with each other, row by row."},
           s.covariance);

@@ -182,6 +182,9 @@ Status Sensor::check(const Node& node, const std::string& path) const {
     return error("there are no poses to make differences of", "false", "differential");
   if (differential && kind == SensorKind::imu && has(X, Roll))
     return error("an imu has no positions", "false", "differential");
+  if (!differential && (way_scale_deviation > 0 || turn_scale_deviation > 0))
+    return error("only ways and turns have relative errors", "differential: true",
+                 way_scale_deviation > 0 ? "way_scale_deviation" : "turn_scale_deviation");
   if (relative && (!poses || !has(X, Vx)))
     return error("there are no poses to count from the first one", "false", "relative");
   if (differential && pose_errors == PoseErrors::as_twist && kind != SensorKind::odometry)

@@ -5,7 +5,10 @@
 /// Frames     poses are those of the sensor's frame S in the world frame W, twists and accelerations are in S; `mount` is
 ///            the pose of S in base_link B. A sample, `config` and `deviation` are about B.
 /// Covariance of turns: about the axes of the message's frame, in rad^2; taken for that of roll, pitch and yaw.
-/// Limits     the mount's lever arm is not applied to accelerations. Errors of differences count as white, so that independent
+/// Scale      a differential sensor's ways and turns may have constant relative errors, whose deviations are given: it measures
+///            (1 + s) times the way and (1 + t) times the turn, and the filter estimates s and t. On a way back and forth, or a loop,
+///            they cancel, which errors that count as white never do.
+/// Limits     the mount's lever arm is not applied to accelerations. Other errors of differences count as white, so that independent
 ///            errors of poses, of which each is in two differences, count twice.
 #include <cstdint>
 #include <string>
@@ -53,6 +56,7 @@ struct Sensor {
   bool differential = false, relative = false;
   PoseErrors pose_errors = PoseErrors::independent;
   double longest_gap_s = 1;
+  double way_scale_deviation = 0, turn_scale_deviation = 0;  ///< prior, as shares; 0: exact
   double pose_rejection_threshold = 0, twist_rejection_threshold = 0, acceleration_rejection_threshold = 0;
   bool remove_gravitational_acceleration = false;
   int queue_size = 20;
@@ -80,6 +84,16 @@ struct Sensor {
           s.pose_errors);
     visit(Field{"longest_gap", "s", "Longest time over which a difference of poses is used.", 1e-3, 1e6},
           s.longest_gap_s);
+    visit(Field{"way_scale_deviation", "1",
+                "Standard deviation of a constant relative error of all ways of a differential sensor, of a "
+                "wheel's radius or a calibration, which the filter estimates; 0: none.",
+                0, 1},
+          s.way_scale_deviation);
+    visit(Field{"turn_scale_deviation", "1",
+                "Standard deviation of a constant relative error of all turns of a differential sensor; 0: "
+                "none.",
+                0, 1},
+          s.turn_scale_deviation);
     visit(Field{"pose_rejection_threshold", "1",
                 "Mahalanobis distance above which a pose is rejected; 0: never.", 0, 1e6},
           s.pose_rejection_threshold);
@@ -103,6 +117,7 @@ struct Sensor {
         s.deviation);
   }
   Status check(const Node& node, const std::string& path) const;
+  bool scaled() const { return differential && (way_scale_deviation > 0 || turn_scale_deviation > 0); }
 };
 
 /// Part of a message: six components of the state in a row, of the acceleration three.
