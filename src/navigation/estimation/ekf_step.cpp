@@ -106,6 +106,12 @@ Processed compare_difference(const Spec& spec, Core& core, const Sample& sample)
     } else {
       Sample twist;
       difference(from, sample, sensor.pose_errors, dt_s, twist);
+      // Relative errors make these velocities unsure; what they share with later ones is not kept.
+      const double variances[] = {sensor.way_scale_deviation * sensor.way_scale_deviation,
+                                  sensor.turn_scale_deviation * sensor.turn_scale_deviation};
+      for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = i / 3 * 3; j <= i; ++j)
+          twist.covariance[triangle_index(i, j)] += variances[i / 3] * twist.value[i] * twist.value[j];
       result = compare(spec, core, twist, true);
     }
   }

@@ -1,0 +1,110 @@
+// Constant relative errors of an odometry's ways and turns (Sensor::way_scale_deviation), against what can be written by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "navigation/estimation/test_messages.h"
+
+namespace sandlot::navigation::ekf {
+namespace {
+
+using namespace test;
+
+constexpr double step_s = 0.1;
+
+/// A filter with an odometry and a sensor of places, which says where it begins; velocities are open.
+Spec spec_of(double way_scale, double turn_scale) {
+  Spec spec;
+  spec.process_noise = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+  spec.sensors = {sensor("odom", SensorKind::odometry, {X, Y, Z, Roll, Pitch, Yaw})};
+  Sensor& odometry = spec.sensors[0];
+  odometry.differential = true;
+  odometry.pose_errors = PoseErrors::as_twist;
+  odometry.way_scale_deviation = way_scale, odometry.turn_scale_deviation = turn_scale;
+  spec.sensors.push_back(sensor("place", SensorKind::pose, {X, Y, Z, Roll, Pitch, Yaw}));
+  for (std::size_t i = Vx; i < states; ++i) spec.initial_covariance[i] = 1;
+  return spec;
+}
+
+/// @param step_m  errors of each difference, other than the scale's
+msg::Odometry odometry_at(double t_s, double x_m, double yaw, double step_m) {
+  msg::Odometry out;
+  out.header.stamp = Time::from_s(t_s);
+  out.pose = {pose_from_rpy({x_m, 0, 0}, {0, 0, yaw}), diagonal6(1e-6, 1e-6)};
+  const double variance = step_m * step_m / (step_s * step_s);
+  out.twist.covariance = diagonal6(variance, variance);
+  return out;
+}
+
+double deviation_x(const Spec& spec, const State& state, Time now) {
+  return std::sqrt(estimate(spec, state, now).P.at(X, X));
+}
+
+TEST(EkfScale, CancelsOnTheWayBackAndForth) {
+  const Spec spec = spec_of(0.02, 0);
+  State state = begin(spec).value();
+  Time now;
+  ASSERT_EQ(add(spec, state, 1, pose_at(0, {}, {}, 1e-10, 1e-10)), Outcome::queued);
+  // 10 m ahead and back in steps of 0.1 m. The first step, and that in which it turns round, are predicted with another velocity, so
+  // that 0.1 and 0.2 m of their ways count wrong: 6 mm of 0.2 m.
+  double farthest = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const double x_m = 0.1 * (i <= 100 ? i : 200 - i);
+    now = Time::from_s(i * step_s);
+    ASSERT_EQ(add(spec, state, 0, odometry_at(i * step_s, x_m, 0, 1e-5)), Outcome::queued);
+    advance(spec, state, now);
+    if (i == 100) farthest = deviation_x(spec, state, now);
+  }
+  EXPECT_NEAR(farthest, 0.02 * 10, 0.02 * 0.1 + 1e-4);
+  EXPECT_LT(deviation_x(spec, state, now), 0.02 * 0.3 + 1e-3);
+}
+
+TEST(EkfScale, IsFoundByAReceiver) {
+  // Positions of 1 cm at 0.1, 0.2 ... 10 m: s has the variance 1e-4 / sum (0.1 i)^2 = 1e-4 / 3383.5, deviation 1.72e-4.
+  const Spec spec = spec_of(0.05, 0.1);
+  State state = begin(spec).value();
+  for (int i = 0; i <= 100; ++i) {
+    const double t_s = i * step_s, x_m = 0.1 * i, yaw = 0.02 * i;
+    // 5 m ahead, then a turn on the spot.
+    const bool turns = i > 50;
+    const double way = turns ? 5 : x_m, turn = turns ? yaw - 1 : 0;
+    ASSERT_EQ(add(spec, state, 0, odometry_at(t_s, 1.02 * way, 0.95 * turn, 1e-6)), Outcome::queued);
+    ASSERT_EQ(add(spec, state, 1, pose_at(t_s, {way, 0, 0}, {0, 0, turn}, 1e-4, 1e-4)), Outcome::queued);
+    advance(spec, state, Time::from_s(t_s));
+  }
+  const ExtraStates& extra = state.core.extra;
+  const std::size_t slot = *spec.scale_slot(0);
+  EXPECT_EQ(slot, 1u);
+  // Steps that begin with another velocity count wrong: 0.1 of 5 m, 0.02 of 1 rad, of the errors themselves.
+  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot], 0.02, 0.02 * 0.1);
+  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot + 1], -0.05, 0.05 * 0.1);
+  // Found to a tenth of what was known before, and better than that.
+  EXPECT_LT(std::sqrt(extra.variance(slot, 0)), 0.005);
+  EXPECT_LT(std::sqrt(extra.variance(slot, 1)), 0.01);
+}
+
+TEST(EkfScale, IsRefusedWhereThereAreNoDifferences) {
+  Spec spec = spec_of(0.02, 0);
+  spec.sensors[0].differential = false;
+  const auto begun = begin(spec);
+  ASSERT_FALSE(begun);
+  EXPECT_NE(begun.error().text().find("differential: true"), std::string::npos) << begun.error().text();
+}
+
+TEST(EkfScale, TakesASlotEach) {
+  Spec spec = spec_of(0.02, 0.02);
+  spec.sensors.pop_back();
+  const Sensor one = spec.sensors[0];
+  for (const char* const name : {"b", "c"}) {
+    spec.sensors.push_back(one);
+    spec.sensors.back().name = name;
+  }
+  EXPECT_EQ(spec.slots(), 6u);
+  EXPECT_TRUE(begin(spec));
+  spec.sensors.push_back(one);
+  spec.sensors.back().name = "d";
+  EXPECT_FALSE(begin(spec));
+}
+
+}  // namespace
+}  // namespace sandlot::navigation::ekf
