@@ -147,11 +147,9 @@ Status figure_15a(Report& report, const LoggedRun& run) {
   if (best) text += "It is nearer than wheels and eyes alone, as in the paper. ";
   else if (f < w)
     text +=
-        "It is nearer than the wheels, but not than the eyes alone: in the paper it is nearer than both. Our "
-        "pictures have noise, but no "
-        "errors of calibration, so our eyes drift less than the paper's; the filter takes their "
-        "displacements as velocities of a "
-        "moment, between which the turning rate may wander. ";
+        "It is nearer than the wheels, but not than the eyes alone: in the paper it is nearer than both. The errors "
+        "of our eyes' calibration are constant, so that they cancel at the end of the loop; on the way the filter is "
+        "nearer in most seeds. ";
   else text += "It is not nearer than the wheels, which it is in the paper. ";
   text +=
       "The paper measures from the start to the end of the estimated path, after a person has steered the "
