@@ -147,8 +147,10 @@ Status figure_15a(Report& report, const LoggedRun& run) {
   if (best) text += "It is nearer than wheels and eyes alone, as in the paper. ";
   else if (f < w)
     text +=
-        "It is nearer than the wheels, but not than the eyes alone: in the paper it is nearer than both. The errors "
-        "of our eyes' calibration are constant, so that they cancel at the end of the loop; on the way the filter is "
+        "It is nearer than the wheels, but not than the eyes alone: in the paper it is nearer than both. The "
+        "errors "
+        "of our eyes' calibration are constant, so that they cancel at the end of the loop; on the way the "
+        "filter is "
         "nearer in most seeds. ";
   else text += "It is not nearer than the wheels, which it is in the paper. ";
   text +=
