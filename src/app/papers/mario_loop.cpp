@@ -151,7 +151,7 @@ Status figure_15a(Report& report, const LoggedRun& run) {
         "errors "
         "of our eyes' calibration are constant, so that they cancel at the end of the loop; on the way the "
         "filter is "
-        "nearer in most seeds. ";
+        "nearer in the mean of 20 seeds. ";
   else text += "It is not nearer than the wheels, which it is in the paper. ";
   text +=
       "The paper measures from the start to the end of the estimated path, after a person has steered the "
