@@ -117,7 +117,9 @@ void expect_all_goals_on(const char* chassis, std::uint64_t first, std::uint64_t
 TEST(SlowClutter, ACarReachesItsGoals) { expect_all_goals_on("car", 1, 2); }
 TEST(SlowClutter, FourSteeredWheelsReachTheirGoals) { expect_all_goals_on("four_wheel_steer", 1, 2); }
 TEST(LongClutter, ACarReachesItsGoalsOnTwentySeeds) { expect_all_goals_on("car", 1, 20); }
-TEST(LongClutter, FourSteeredWheelsReachTheirGoalsOnTwentySeeds) { expect_all_goals_on("four_wheel_steer", 1, 20); }
+TEST(LongClutter, FourSteeredWheelsReachTheirGoalsOnTwentySeeds) {
+  expect_all_goals_on("four_wheel_steer", 1, 20);
+}
 
 /// Ticks until all goals have an end. @return whether the rule `touched` has counted a contact
 bool drive_on(Simulation& simulation, const std::string& navigator, double goals, int most_ticks) {

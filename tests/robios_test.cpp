@@ -189,7 +189,8 @@ TEST_F(RobiosPrograms, GainsOfTheLoopsAreThoseOfTheProgram) {
           robot("plain", "weak.c", "diff_robot", "{level: contact}", 4));
   const std::string values =
       "strong/drive.control.vv,strong/drive.control.tv,strong/drive.control.vw,strong/drive.control.tw,"
-      "strong.twist.linear.x,weak.twist.linear.x,plain.twist.linear.x,strong/controller.refused,plain/controller.refused";
+      "strong.twist.linear.x,weak.twist.linear.x,plain.twist.linear.x,strong/controller.refused,plain/"
+      "controller.refused";
   const Printed run = sandlot("run " + folder.file("gains.yaml") + " --headless --log " +
                               folder.file("log.csv") + " --log-values " + values);
   ASSERT_EQ(run.exit_code, 0) << run.out;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -25,11 +26,12 @@ struct VineyardRun {
   std::size_t rows = 0;
 };
 
-VineyardRun vineyard_run(int seed, const std::string& settings = "") {
+VineyardRun vineyard_run(int seed, const std::string& settings = "",
+                         const std::string& scenario = "scenarios/vineyard_loop.yaml") {
   const TestFolder scratch;
   const std::string file = scratch.file("loop.csv");
   const Printed printed = sandlot(
-      "run scenarios/vineyard_loop.yaml --headless --seed " + std::to_string(seed) + " --log " + file +
+      "run " + scenario + " --headless --seed " + std::to_string(seed) + " --log " + file +
       " --log-values 'wheels,eyes,fused,deviation,located,located_deviation' " + settings);
   EXPECT_EQ(printed.exit_code, 0) << printed.out;
   std::ifstream in(file);
@@ -93,6 +95,29 @@ TEST(LongVineyardLoop, IsClosedInNineteenOfTwentySeeds) {
   EXPECT_LT(located_by_deviation, too_sure_20);
   RecordProperty("fused_by_deviation", std::to_string(by_deviation));
   RecordProperty("located_by_deviation", std::to_string(located_by_deviation));
+}
+
+/// Another ground and other vines, steered by the eyes, and no device on the robot that tells the truth: nothing can have read it.
+TEST(LongVineyardLoop, IsClosedInAnotherVineyardWithoutTheTruth) {
+  const TestFolder scratch;
+  const std::string folder = scratch.file("other");
+  ASSERT_EQ(shell("python3 tools/make_vineyard.py --seed 3 " + folder).exit_code, 0);
+  std::ifstream in("scenarios/vineyard_loop.yaml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string device = "      truth: {kind: ground_truth}\n", models = "../models/";
+  ASSERT_NE(text.find(device), std::string::npos);
+  text.erase(text.find(device), device.size());
+  text.replace(text.find(models), models.size(), std::filesystem::current_path().string() + "/models/");
+  scratch.write("loop.yaml", text);
+  const VineyardRun run = vineyard_run(1,
+                                       "--set driver=eyes/odometry --set world=" + folder +
+                                           "/vineyard.sdf --set start_z=0.417 --set start_pitch=0.053",
+                                       scratch.file("loop.yaml"));
+  EXPECT_LT(run.end.fused, 0.3);
+  EXPECT_LT(run.end.located, 0.3);
+  EXPECT_LT(run.end.fused, 3 * run.end.deviation);
+  EXPECT_LT(run.end.located, 3 * run.end.located_deviation);
+  EXPECT_LT(run.square.fused, run.square.wheels);
 }
 
 /// Five seeds with a device that is dead from 20 s on.

@@ -1,6 +1,7 @@
 // Constant relative errors of an odometry's ways and turns (Sensor::way_scale_deviation), against what can be written by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/estimation/test_messages.h"
@@ -12,17 +13,18 @@ using namespace test;
 
 constexpr double step_s = 0.1;
 
-/// A filter with an odometry and a sensor of places, which says where it begins; velocities are open.
+/// A filter with an odometry and a sensor of places, which says where it begins, at a stand: its first difference tells a velocity alone, since
+/// there is no pose of the filter yet from which it counts. Velocities are open after that.
 Spec spec_of(double way_scale, double turn_scale) {
   Spec spec;
-  spec.process_noise = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+  spec.process_noise = {0, 0, 0, 0, 0, 0, 1000, 1000, 1000, 1, 1, 1, 1, 1, 1};
   spec.sensors = {sensor("odom", SensorKind::odometry, {X, Y, Z, Roll, Pitch, Yaw})};
   Sensor& odometry = spec.sensors[0];
   odometry.differential = true;
   odometry.pose_errors = PoseErrors::as_twist;
   odometry.way_scale_deviation = way_scale, odometry.turn_scale_deviation = turn_scale;
   spec.sensors.push_back(sensor("place", SensorKind::pose, {X, Y, Z, Roll, Pitch, Yaw}));
-  for (std::size_t i = Vx; i < states; ++i) spec.initial_covariance[i] = 1;
+  for (std::size_t i = Vx; i < states; ++i) spec.initial_covariance[i] = 1e-12;
   return spec;
 }
 
@@ -45,42 +47,46 @@ TEST(EkfScale, CancelsOnTheWayBackAndForth) {
   State state = begin(spec).value();
   Time now;
   ASSERT_EQ(add(spec, state, 1, pose_at(0, {}, {}, 1e-10, 1e-10)), Outcome::queued);
-  // 10 m ahead and back in steps of 0.1 m: 0.2 m at the far end, and a small part of it at the end. That part is of the steps which are
-  // predicted with another velocity, where it turns round. As a random walk the errors would be sqrt(2) times as large as at the far end.
+  // 10 m ahead and back, 5 m (1 - cos): 0.2 m at the far end, and at the end what is not the scale's, 0.01 mm at the start and in each of 200
+  // steps. Each expected way is about that of the step before, whose sum is the same. As a random walk the errors would be sqrt(2) times
+  // as large as at the far end.
   double farthest = 0;
-  for (int i = 0; i <= 200; ++i) {
-    const double x_m = 0.1 * (i <= 100 ? i : 200 - i);
-    now = Time::from_s(i * step_s);
+  for (int i = 0; i <= 201; ++i) {
+    const double x_m = 5 - 5 * math::cos(math::tau * std::min(i, 200) / 200);
+    now = Time::from_s(i * step_s + 1e-6);  // messages of this very moment wait for others
     ASSERT_EQ(add(spec, state, 0, odometry_at(i * step_s, x_m, 0, 1e-5)), Outcome::queued);
     advance(spec, state, now);
-    if (i == 100) farthest = deviation_x(spec, state, now);
+    if (i == 101) farthest = deviation_x(spec, state, now);
   }
-  EXPECT_NEAR(farthest, 0.02 * 10, 0.02 * 0.1 + 1e-4);
-  EXPECT_LT(deviation_x(spec, state, now), 0.25 * farthest);
+  EXPECT_NEAR(farthest, 0.02 * 10, 1e-3);
+  EXPECT_LT(deviation_x(spec, state, now), 1e-3);
 }
 
 TEST(EkfScale, IsFoundByAReceiver) {
-  // Positions of 1 cm at 0.1, 0.2 ... 10 m: s has the variance 1e-4 / sum (0.1 i)^2 = 1e-4 / 3383.5, deviation 1.72e-4.
   const Spec spec = spec_of(0.05, 0.1);
   State state = begin(spec).value();
-  for (int i = 0; i <= 100; ++i) {
-    const double t_s = i * step_s, x_m = 0.1 * i, yaw = 0.02 * i;
+  for (int i = -1; i <= 100; ++i) {
+    const double t_s = (i + 1) * step_s, x_m = 0.1 * std::max(0, i), yaw = 0.02 * i;
     // 5 m ahead, then a turn on the spot.
     const bool turns = i > 50;
     const double way = turns ? 5 : x_m, turn = turns ? yaw - 1 : 0;
     ASSERT_EQ(add(spec, state, 0, odometry_at(t_s, 1.02 * way, 0.95 * turn, 1e-6)), Outcome::queued);
     ASSERT_EQ(add(spec, state, 1, pose_at(t_s, {way, 0, 0}, {0, 0, turn}, 1e-4, 1e-4)), Outcome::queued);
-    advance(spec, state, Time::from_s(t_s));
+    advance(spec, state, Time::from_s(t_s + 1e-6));
   }
   const ExtraStates& extra = state.core.extra;
   const std::size_t slot = *spec.scale_slot(0);
   EXPECT_EQ(slot, 1u);
-  // Steps that begin with another velocity count wrong: 0.1 of 5 m, 0.02 of 1 rad, of the errors themselves.
-  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot], 0.02, 0.02 * 0.1);
-  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot + 1], -0.05, 0.05 * 0.1);
-  // Found to a tenth of what was known before, and better than that.
-  EXPECT_LT(std::sqrt(extra.variance(slot, 0)), 0.005);
-  EXPECT_LT(std::sqrt(extra.variance(slot, 1)), 0.01);
+  // The line through 102 places of 1 cm, whose slope is 1 / (1 + s) and whose start is open, too: its deviation is 1 cm by the root of the sum of
+  // (x - mean)^2, which is 282 m^2 for the ways 0, 0, 0.1 ... 5 m and fifty times 5 m. The same of turns, 0 and 0.02 ... 1 rad, where the start
+  // is known by 102 readings and by the way's direction, to 1 cm by the root of 282 m^2, as well as by another 282 readings:
+  // 17.17 - 25.5^2 / 384 = 15.5 rad^2.
+  const double way = 1.02 * 0.01 / std::sqrt(282.1), turn = 0.95 * 0.01 / std::sqrt(15.48);
+  EXPECT_NEAR(std::sqrt(extra.variance(slot, 0)), way, 0.05 * way);
+  EXPECT_NEAR(std::sqrt(extra.variance(slot, 1)), turn, 0.05 * turn);
+  // Without noise. The step in which a way or turn begins is not expected, and counts as none; that in which it ends counts as one: one of 50.
+  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot], 0.02, 0.02 * 0.05);
+  EXPECT_NEAR(extra.x[slot * ExtraStates::per_slot + 1], -0.05, 0.05 * 0.05);
 }
 
 TEST(EkfScale, IsRefusedWhereThereAreNoDifferences) {

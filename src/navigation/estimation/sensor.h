@@ -8,7 +8,9 @@
 /// Scale      a differential sensor's ways and turns may have constant relative errors, whose deviations are given: it measures
 ///            (1 + s) times the way and (1 + t) times the turn, and the filter estimates s and t. On a way back and forth, or a loop,
 ///            they cancel, which errors that count as white never do.
-/// Limits     the mount's lever arm is not applied to accelerations. Other errors of differences count as white, so that independent
+/// Limits     the mount's lever arm is not applied to accelerations. How much a relative error shows is told by the way that the filter
+///            expects, not by the measured one, whose noise would look like an error of its own: a way that begins with a
+///            velocity nobody expects counts wrong. Other errors of differences count as white, so that independent
 ///            errors of poses, of which each is in two differences, count twice.
 #include <cstdint>
 #include <string>

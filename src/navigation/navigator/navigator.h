@@ -17,8 +17,8 @@
 ///          the robot no nearer, and after `time_limit` at the latest.
 ///          Without a pose, or with one less certain than max_pose_std, the robot stands.
 /// Limits   obstacles in the plane of the laser. A goal outside the area is never reached: no rolling map.
-///          The first pose is taken as free. Gaps that were found blocked stay closed for differential and omni alone. A car's local plan is its global one: it stops before obstacles and plans
-///          again. Latency of the drive is not modelled.
+///          The first pose is taken as free. Gaps that were found blocked stay closed for differential and omni alone. A car's local plan
+///          is its global one: it stops before obstacles and plans again. Latency of the drive is not modelled.
 /// Cost     a step: local map about 40 ns a cell of the window (0.4 ms at 5 m and 0.05 m), dynamic window 0.5 ms; a scan 0.1 ms; a
 ///          plan some milliseconds, with the global map 40 ns a cell. Memory: three bytes a cell of the area, 20 during a plan;
 ///          a plan has at most max_poses.
@@ -250,7 +250,7 @@ class Navigator {
 
  private:
   Navigator(const NavigatorSpec& spec, const Footprint& footprint, const Footprint& grown);
-  bool by_dwa() const { return spec_.chassis <= Chassis::omni; }  ///< the dynamic window drives; else the pursuit
+  bool by_dwa() const { return spec_.chassis <= Chassis::omni; }  ///< else the pursuit drives
   void place_area(const Pose2& X);
   void observe(const NavigatorInput& in, const Pose2& X);
   /// Obstacles of a part of the area.
