@@ -53,7 +53,7 @@ constexpr Golden goldens[] = {
     {"scenarios/football.yaml --duration 20s", "2a056ffff8b8a2c3"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
     {"scenarios/office_localise.yaml --duration 30s", "162ccb418accda5e"},
-    {"scenarios/office_goals.yaml --duration 30s", "efeb163ec5a99dea"},
+    {"scenarios/office_goals.yaml --duration 30s", "3a064743e084bf21"},
     {"scenarios/clutter.yaml --duration 20s", "baedacfa7734112a"},
 };
 
