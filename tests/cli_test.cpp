@@ -46,7 +46,7 @@ TEST(Cli, WrongOptionsNameTheOptionAndExit2) {
   refused("rover", "models/rover/model.sdf");
   refused("README.md", "neither a scenario");
   refused("", "needs either a file or --from");
-  refused("--from README.md", "no Sandlot snapshot");
+  refused("--from README.md", "not a Sandlot snapshot");
   refused("--from nowhere.snap", "cannot read");
 }
 

@@ -87,7 +87,7 @@ TEST(SnapshotFiles, BadOnesAreRefusedWithTheFilesNameAndWhatIsWrong) {
   newer[8] = 99;
   refused("newer.snapshot", newer, "has version 99");
   EXPECT_THAT(sandlot("run --from " + scratch.write("foreign.snapshot", "\x89PNG\r\n")).out,
-              HasSubstr("no Sandlot snapshot"));
+              HasSubstr("not a Sandlot snapshot"));
   EXPECT_EQ(sandlot("run --from " + scratch.path.string()).exit_code, 2);
 }
 

@@ -166,7 +166,7 @@ TEST_F(RunTest, ARefusedRunLeavesNothing) {
   const std::string file = folder + "stand.yaml";
   EXPECT_THAT(refusal({}), HasSubstr("either a file or --from"));
   EXPECT_THAT(refusal({.file = folder + "none.yaml", .duration_s = 1}), HasSubstr("none.yaml"));
-  EXPECT_THAT(refusal({.from_file = file}), HasSubstr("no Sandlot snapshot"));
+  EXPECT_THAT(refusal({.from_file = file}), HasSubstr("not a Sandlot snapshot"));
   EXPECT_THAT(refusal({.from_file = file, .seed = 1}), HasSubstr("cannot change a run that has begun"));
   EXPECT_THAT(refusal({.file = file, .duration_s = -1}), HasSubstr("--duration"));
   EXPECT_THAT(refusal({.file = file, .rate = 0.0}), HasSubstr("--rate"));

@@ -260,10 +260,10 @@ TEST(Localise, RefusesPosesThatCannotBe) {
   std::array<double, 36> covariance{};
   covariance[0] = -1;
   t.put_pose({4, 2, 0}, "map", covariance);
-  is_refused("no covariance");
+  is_refused("not a covariance");
   covariance[0] = 1, covariance[7] = 1, covariance[1] = covariance[6] = 2;
   t.put_pose({4, 2, 0}, "map", covariance);
-  is_refused("no covariance");
+  is_refused("not a covariance");
   t.put_pose({4, 2, 0}, "map");
   auto* const topic = topic_cast<msg::PoseWithCovarianceStamped>(t.outputs.inputs()[0].topic.get());
   topic->message.pose.pose.q = {0, 0, 0, 0};
