@@ -106,8 +106,8 @@ TEST(LongVineyardLoop, IsClosedInAnotherVineyard) {
   const TestFolder scratch;
   const std::string folder = scratch.file("other");
   ASSERT_EQ(shell("python3 tools/make_vineyard.py --seed 3 " + folder).exit_code, 0);
-  expect_closed(vineyard_run(
-      1, "--set world=" + folder + "/vineyard.sdf --set start_z=0.417 --set start_pitch=0.053"));
+  expect_closed(
+      vineyard_run(1, "--set world=" + folder + "/vineyard.sdf --set start_z=0.417 --set start_pitch=0.053"));
 }
 
 /// The eyes steer, and no device on the robot tells the truth: nothing can have read it.
