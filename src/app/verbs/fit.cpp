@@ -246,7 +246,7 @@ Status read_table(Problem& problem) {
   if (options.compare.empty())
     return Error{"with a table --compare says which value each column is",
                  "--compare cart.joints.left_wheel_joint.velocity=speed"};
-  for (std::string each : options.compare) {
+  for (const std::string& each : options.compare) {
     const std::size_t equals = each.rfind('=');
     if (equals == std::string::npos || equals == 0)
       return Error{"--compare '" + each + "' is not VALUE=COLUMN or VALUE=COLUMN:SCALE"};
