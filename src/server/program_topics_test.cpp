@@ -82,10 +82,14 @@ TEST(ProgramTopics, AClientOfFoxglovePublishesInTwoEncodings) {
   // The world's message has the topic with its program.
   const auto world = viewer.next(viewer.subscribe("/sandlot/world"));
   ASSERT_TRUE(world);
-  for (const json& instance : world->parsed()["instances"])
+  int seen = 0;
+  const json instances = world->parsed()["instances"];
+  for (const json& instance : instances)
     if (instance["name"] == "rover2") {
       EXPECT_EQ(instance["controllers"][0]["inputs"], json({{{"name", topic}, {"type", type}}}));
+      ++seen;
     }
+  EXPECT_EQ(seen, 1);
 }
 
 TEST(ProgramTopics, SpectatorsDoNotPublish) {
