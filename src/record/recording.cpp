@@ -55,7 +55,8 @@ Result<Recording> Recording::open(const std::string& path) {
   if (!info) return about(std::move(info.error()), "the state at the beginning: ");
   out.begin_ = std::move(*info);
   if (!hashes)
-    return about({"it was recorded without hashes of the state, so nobody knows its ticks",
+    return about({"nobody knows its ticks: it was recorded without hashes of the state, or ended before the "
+                  "first one was written",
                   "record again with hashes: true"},
                  "");
   if (auto facts = out.reader_->metadata(recording::run_metadata)) out.facts_ = std::move(*facts);
