@@ -28,6 +28,8 @@ with Robot() as robot:
     for step in robot.steps():
         %s
 """
+# 300 orders a step, and 5000 letters of output. It answers in about a tenth of a second.
+FLOODS = "[robot.command('drive', {'linear': {'x': float(i % 3)}}) for i in range(300)]; print('x' * 5000)"
 
 
 class Match(unittest.TestCase):
@@ -226,8 +228,7 @@ class Programs(Match):
         self.assertLess(result["sim_seconds"], 40)
 
     def test_a_program_that_floods_harms_nobody(self):
-        flood = self.program_team("Flood", ANSWERS % (
-            "[robot.command('drive', {'linear': {'x': float(i % 3)}}) for i in range(300)]; print('x' * 5000)"))
+        flood = self.program_team("Flood", ANSWERS % FLOODS)
         result = self.play(OURS, flood, "--duration", "2 s")
         self.assertTrue(result["ended"])
         self.assertEqual(result["summary"]["errors"], [])
@@ -378,8 +379,7 @@ class Tournament(Match):
         silent = self.program_team("Silent", "import time\ntime.sleep(1000)", "deadline: 0.5 s, patience: 0.5 s")
         crash = self.program_team("Crash", "import os\n" + ANSWERS % "os.abort() if step.number > 5 else None", "deadline: 0.5 s, restart: never")
         late = self.program_team("Late", ANSWERS % "import time; time.sleep(0.1)", "deadline: 5 ms")
-        flood = self.program_team("Flood", ANSWERS % (
-            "[robot.command('drive', {'linear': {'x': float(i % 3)}}) for i in range(300)]; print('x' * 5000)"))
+        flood = self.program_team("Flood", ANSWERS % FLOODS, "deadline: 1 s")
         self.cup("teams/passing", OURS, silent, crash, late, flood, "--duration", "2 s", "--seeds", "1", timeout=400)
         cup = self.read()
         self.assertTrue(cup["ended"])
@@ -388,10 +388,6 @@ class Tournament(Match):
         self.assertEqual(len(games), 15)
         for game in games:
             fails = failing & {game["left"], game["right"]}
-            if "Flood" in (game["left"], game["right"]):
-                # Whether it answers in time depends on the machine, and while it is waited for, Late may answer. The game has a result.
-                self.assertTrue(game["played"], game)
-                continue
             self.assertEqual(game["walk_over"], bool(fails), game)
             if len(fails) == 1:
                 self.assertIn(fails.copy().pop() + " loses by rule", game["reason"])
@@ -400,7 +396,7 @@ class Tournament(Match):
             elif fails:
                 self.assertIn("neither has won", game["reason"])
         for row in cup["table"]:
-            if row["team"] in ("Passing", "Run and kick"):
+            if row["team"] not in failing:
                 self.assertGreaterEqual(row["won"], len(failing), row)
         # The game of two others is the one that they play alone.
         both = next(game for game in games if {game["left"], game["right"]} == {"Passing", "Run and kick"})

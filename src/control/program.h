@@ -29,6 +29,7 @@ struct OutsideAnswer {
     message,  ///< `bytes` are what the outside sent
     missed,   ///< nothing came until the deadline
     gone,     ///< the outside has ended: nothing will come any more; `bytes` are the reason as text
+    late,     ///< `bytes` answer an earlier step, whose deadline was over; nothing answers this one
   } kind = Kind::message;
   std::vector<std::byte> bytes;
 

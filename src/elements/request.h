@@ -113,7 +113,7 @@ struct AnswerRequest {
   std::string program;
   OutsideAnswer answer;
   static auto members(auto& x) { return std::tie(x.program, x.answer.kind, x.answer.bytes); }
-  bool fits() const { return answer.kind <= OutsideAnswer::Kind::gone; }
+  bool fits() const { return answer.kind <= OutsideAnswer::Kind::late; }
 };
 
 /// Calls a service of a device (devices/device_service.h).

@@ -115,7 +115,7 @@ TEST(Request, WithAValueThatIsNoneOfAnEnumerationIsRefused) {
   };
   AnswerRequest answer{"rover/brain", {OutsideAnswer::Kind::gone, {}}};
   EXPECT_TRUE(comes_back(answer));
-  answer.answer.kind = static_cast<OutsideAnswer::Kind>(static_cast<int>(OutsideAnswer::Kind::gone) + 1);
+  answer.answer.kind = static_cast<OutsideAnswer::Kind>(static_cast<int>(OutsideAnswer::Kind::late) + 1);
   EXPECT_FALSE(comes_back(answer));
   InfoRequest info{"crate", {}};
   info.info.category = model::Category::static_object;

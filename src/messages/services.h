@@ -75,6 +75,34 @@ struct Decisions {
   };
 };
 
+/// Where the ball and the robots of a match were while it was in play, and who touched the ball, from the beginning of the run on.
+struct MatchTrack {
+  static constexpr const char* ros_type = "sandlot_msgs/srv/MatchTrack";
+  struct Request {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/MatchTrack_Request";
+    static void fields(auto&, auto&&) {}
+  };
+  struct Response {
+    static constexpr const char* ros_type = "sandlot_msgs/srv/MatchTrack_Response";
+    std::vector<std::string> robots, teams;
+    std::vector<double> times;
+    std::vector<std::int32_t> places;
+    std::vector<double> touch_times;
+    std::vector<std::string> touches;
+    static void fields(auto& s, auto&& visit) {
+      visit(Field{"robots", "", "Robots of teams."}, s.robots);
+      visit(Field{"teams", "", "Team of each robot."}, s.teams);
+      visit(Field{"times", "s", "Times of the places, oldest first."}, s.times);
+      visit(Field{"places", "mm",
+                  "For each time x and y of the ball, then of each robot; -2147483648 where there is none."},
+            s.places);
+      visit(Field{"touch_times", "s", "Times from which another robot is the last that touched the ball."},
+            s.touch_times);
+      visit(Field{"touches", "", "Name of that robot; empty: the ball is not in play."}, s.touches);
+    }
+  };
+};
+
 /// Ends the connection of a client.
 struct DisconnectClient {
   static constexpr const char* ros_type = "sandlot_msgs/srv/DisconnectClient";

@@ -49,6 +49,9 @@ TEST(Services, HaveTheMembersOfTheirSrvFiles) {
       {"sandlot_msgs/srv/DisconnectClient", "uint64 client\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/LoadController", "string name\nstring kind\nstring parameters\nstring file\n",
        "bool ok\n"},
+      {"sandlot_msgs/srv/MatchTrack", "",
+       "string[] robots\nstring[] teams\nfloat64[] times\nint32[] places\nfloat64[] touch_times\nstring[] "
+       "touches\n"},
       {"sandlot_msgs/srv/RestartProgram", "string program\n", "bool ok\nstring text\n"},
       {"sandlot_msgs/srv/Watch", "string[] values\nfloat64 rate_hz\n",
        "bool ok\nstring text\nstring topic\n"},

@@ -1,6 +1,7 @@
 /// Sessions: clients that drive robots, by token, freely or in lockstep.
 #include "base/random.h"
 #include "server/test_bridge.h"
+#include "sim/test_input.h"
 #include "sim/watch/values.h"
 
 namespace sandlot::server::test {
@@ -107,6 +108,70 @@ TEST(Sessions, AClientThatMissesItsDeadlineIsCountedAndItsRobotStops) {
   EXPECT_LT(std::abs(read("rover1.twist.linear.x")), 0.01);
   run.server->stop();
   client.join();
+}
+
+/// Claims a robot in lockstep and answers so many steps, each after a pause.
+std::thread answering(std::string url, std::string robot, int deadline_ms, std::chrono::milliseconds pause,
+                      int steps = 1000) {
+  return std::thread([=] {
+    Bridge bridge(url);
+    const json claimed = bridge.claim({{"robot", robot}, {"mode", "lockstep"}, {"deadline_ms", deadline_ms}});
+    EXPECT_EQ(claimed["op"], "sandlot.claimed") << claimed.dump();
+    for (int left = steps; left > 0; --left) {
+      const json step = bridge.next("sandlot.tick");
+      if (step.is_null()) return;
+      std::this_thread::sleep_for(pause);
+      bridge.send({{"op", "sandlot.done"}, {"step", step["step"]}});
+    }
+  });
+}
+
+/// Five deadlines of one that is late pass while another one, who has time, is waited for; one goes away and one never comes.
+/// Each loses its own steps alone, and the log repeats all of it without any client.
+TEST(Sessions, EachClientIsHeldToItsOwnDeadlineWhoeverElseIsWaitedFor) {
+  model::Setup setup = remote(4);
+  setup.stop = Time::from_s(0.5);
+  setup.instances.back().controllers.edit().front().config.set("patience", Node::scalar("0.1 s"));
+  Running run(std::move(setup));
+  const std::vector<std::byte> start = run.session.simulation().snapshot();
+  sandlot::test::InputLog log;
+  run.session.add_observer(&log);
+  std::vector<std::thread> clients;
+  clients.push_back(answering(run.url(), "rover1", 20, 60ms));
+  clients.push_back(answering(run.url(), "rover2", 20'000, 100ms));
+  clients.push_back(answering(run.url(), "rover3", 20'000, 0ms, 1));
+  run.go();
+  run.thread.join();
+  EXPECT_TRUE(run.status) << run.status.error().text();
+  const auto read = [&](const std::string& address) {
+    auto found = NamedValue::find(run.session.simulation(), address);
+    EXPECT_TRUE(found) << address;
+    return found ? found->read().value_or(-1) : -1;
+  };
+  // The control steps of 0.5 s at 20 Hz but the last one, whose answer would act in the tick after the end.
+  constexpr double steps = 10;
+  EXPECT_EQ(read("rover2/brain.answers"), steps);
+  EXPECT_EQ(read("rover2/brain.misses"), 0);
+  // Its late answers act, with steps that it was not sent.
+  EXPECT_EQ(read("rover1/brain.misses"), steps);
+  EXPECT_GE(read("rover1/brain.answers"), 3);
+  EXPECT_EQ(read("rover3/brain.answers"), 1);
+  EXPECT_EQ(read("rover3/brain.misses"), steps - 1);
+  EXPECT_EQ(read("rover4/brain.answers"), 0);
+  EXPECT_EQ(read("rover4/brain.misses"), steps);
+  run.session.remove_observer(&log);
+  run.server->stop();
+  for (std::thread& each : clients) each.join();
+
+  Diagnostics diagnostics;
+  const auto again = Simulation::restore(start, {}, diagnostics);
+  ASSERT_TRUE(again);
+  for (const auto& [tick, hash] : log.hash) {
+    if (tick == 0) continue;
+    sandlot::test::feed(**again, log.input[tick]);
+    ASSERT_TRUE((*again)->tick());
+    ASSERT_EQ((*again)->state_hash(), hash) << tick;
+  }
 }
 
 TEST(Sessions, ATokenOpensItsRobotAlone) {

@@ -81,6 +81,7 @@ struct RequestText {
   std::string operator()(const AnswerRequest& x) const {
     if (x.answer.kind == OutsideAnswer::Kind::missed) return "no answer in time";
     const std::string text(x.answer.text());
+    if (x.answer.kind == OutsideAnswer::Kind::late) return "late answer " + text;
     return (x.answer.kind == OutsideAnswer::Kind::gone ? "gone: " : "answer ") + text;
   }
 };

@@ -137,7 +137,7 @@ test("possession, roles and maps follow the game", { skip }, async () => {
   assert.equal(await page.locator(`${by("match-players")} .match-player`).count(), 10);
   await page.locator(by("match-view-passes")).click();
   await until("a pass", async () => (await page.locator(`${by("field-picture")} .pass`).count()) > 0, 30);
-  assert.match(await text("match-caption"), /^Passes since this page looks on: cyan \d+, magenta \d+$/);
+  assert.match(await text("match-caption"), /^Passes so far: cyan \d+, magenta \d+$/);
   await page.screenshot({ path: `${pictures}/match_passes.png` });
 });
 
@@ -146,6 +146,20 @@ test("the camera of a robot opens from its row", { skip }, async () => {
   await page.locator(by("match-camera-cyan2")).click();
   await page.locator(by("picture-topic")).waitFor();
   assert.equal(await page.locator(by("picture-topic")).inputValue(), "/cyan2/eye/image/compressed");
+});
+
+test("who comes late sees the same maps", { skip }, async () => {
+  await say("pause");
+  // Nothing moves any more: all that this one shows comes from the server.
+  const late = await open("dark");
+  await late.locator(by("tab-match")).click();
+  await late.locator(by("match-view-passes")).click();
+  await until("passes", async () => (await late.locator(`${by("field-picture")} .pass`).count()) > 3, 30);
+  await late.locator(by("match-view-ball")).click();
+  await until("heat", () => late.locator(".field-heat").isVisible(), 30);
+  assert.match(await late.locator(by("match-caption")).first().textContent(), /^Ball in 0:[1-9]/);
+  await late.context().close();
+  await say("run");
 });
 
 test("in the light theme it reads as well", { skip }, async () => {

@@ -145,6 +145,30 @@ export function stateMessage(time_s, wrong = false) {
   return w.string(nameOf(holder(k))).u64(before.length).u64(before.length).buffer();
 }
 
+const waits = (time_s) => {
+  const last = SCRIPT.filter(([at_s]) => at_s <= time_s).at(-1);
+  return time_s - (last?.[0] ?? time_s) < (last?.[1] === 'goal' ? 2 : 1);
+};
+/** What a server keeps of a match: places and touches while the ball was in play. */
+export function trackUntil(world, time_s) {
+  const robots = world.bodies.filter((b) => b.robot && b.team), track = { robots: robots.map((b) => b.name), teams: robots.map((b) => b.team), times: [], places: [], touch_times: [], touches: [] };
+  const mm = (m) => Math.round(1000 * m);
+  for (let i = 0; i * 0.2 <= time_s; ++i) {
+    const at_s = i * 0.2, robot = waits(at_s) ? '' : nameOf(holder(Math.floor(at_s / PASS_S)));
+    if (robot !== (track.touches.at(-1) ?? '')) {
+      track.touch_times.push(at_s);
+      track.touches.push(robot);
+    }
+    if (robot === '') continue;
+    track.times.push(at_s);
+    track.places.push(...ballAt(at_s).map(mm), ...robots.flatMap((b) => {
+      const { x, y } = robotAt(b.team, Number(b.name.at(-1)), at_s);
+      return [mm(x), mm(y)];
+    }));
+  }
+  return track;
+}
+
 export function playerMessage(world, body, time_s) {
   const n = Number(body.name.at(-1)), k = Math.floor(time_s / PASS_S), has = nameOf(holder(k)) === body.name;
   const at = robotAt(body.team, n, time_s), [x, y] = ballAt(time_s);

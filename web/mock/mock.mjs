@@ -7,7 +7,7 @@ import { extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { WebSocketServer } from 'ws';
 import { CdrReader, CdrWriter, Writer } from './bytes.mjs';
-import { decisionMessage, decisionsUntil, makeMatch, moveMatch, playerMessage, stateMessage } from './match.mjs';
+import { decisionMessage, decisionsUntil, makeMatch, moveMatch, playerMessage, stateMessage, trackUntil } from './match.mjs';
 import { clientsMessage } from './clients.mjs';
 import { SCHEMAS, SERVICES } from './schemas.mjs';
 import { cratePng } from './texture.mjs';
@@ -215,6 +215,9 @@ function onBinary(client, data) {
     }
     case '/sandlot/decisions':
       respond({ decisions: decisionsUntil(world, run.tick * step_s) }, (w) => w.u32(0));
+      break;
+    case '/sandlot/match_track':
+      respond(trackUntil(world, match ? run.tick * step_s : 0), (w) => w.u32(0).u32(0).u32(0).u32(0).u32(0).u32(0));
       break;
     case '/sandlot/watch': {
       const reader = request ? undefined : new CdrReader(payload);

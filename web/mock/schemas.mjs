@@ -23,6 +23,7 @@ export const SERVICES = [
   { name: '/sandlot/complete', type: 'sandlot_msgs/srv/Complete', request: 'string line\n', response: 'string[] candidates\n' },
   { name: '/sandlot/watch', type: 'sandlot_msgs/srv/Watch', request: 'string[] values\nfloat64 rate_hz\n', response: 'bool ok\nstring text\nstring topic\n' },
   { name: '/sandlot/decisions', type: 'sandlot_msgs/srv/Decisions', request: 'string topic\n', response: `sandlot_msgs/RefereeDecision[] decisions\n${LINE}MSG: sandlot_msgs/RefereeDecision\nuint64 sequence\n` },
+  { name: '/sandlot/match_track', type: 'sandlot_msgs/srv/MatchTrack', request: '', response: 'string[] robots\nstring[] teams\nfloat64[] times\nint32[] places\nfloat64[] touch_times\nstring[] touches\n' },
   { name: '/sandlot/disconnect_client', type: 'sandlot_msgs/srv/DisconnectClient', request: 'uint64 client\n', response: 'bool ok\nstring text\n' },
   { name: '/sandlot/restart_program', type: 'sandlot_msgs/srv/RestartProgram', request: 'string program\n', response: 'bool ok\nstring text\n' },
 ];

@@ -106,6 +106,43 @@ test('a pass is two touches within a team, the ball having moved', () => {
   assert.equal(tally.passes.length, 0);
 });
 
+test('who comes late makes the same maps of what the server has kept', () => {
+  const team = (robot) => robot[0];
+  const live = new m.Tally(m.dimensionsOf(12)), late = new m.Tally(m.dimensionsOf(12));
+  const track = { robots: ['a1', 'a2', 'b1'], teams: ['a', 'a', 'b'], times: [], places: [], touch_times: [], touches: [] };
+  const absent = -2147483648;
+  const holders = [[0, 'a1'], [2, 'a2'], [4, 'b1'], [6, 'b1'], [8, '']];
+  let holder = '';
+  for (let i = 0; i < 50; i++) {
+    const time_s = i * 0.2, now = holders.filter(([from_s]) => from_s <= time_s).at(-1)[1];
+    // a1 gives it to a2, who loses it; b1 comes after a second.
+    const spots = [[0, 0], [4, 0.25], [4, 3]], ball = [Math.min(4000, 200 * i) / 1000, time_s > 4 ? 2.5 : 0.125];
+    if (now !== '') {
+      const robots = track.robots.map((name, r) => ({ name, team: name[0], at: spots[r] })).filter((r) => r.name !== 'b1' || time_s >= 1);
+      live.sample(time_s, ball, robots);
+      track.times.push(time_s);
+      track.places.push(...ball.map((v) => Math.round(1000 * v)), 0, 0, 4000, 250, ...(time_s >= 1 ? [4000, 3000] : [absent, absent]));
+    }
+    live.touch(time_s, now, now !== '', team);
+    if (now !== holder) {
+      track.touch_times.push(time_s);
+      track.touches.push(now);
+      holder = now;
+    }
+  }
+  assert.deepEqual(live.passes.map((p) => [p.from, p.to]), [['a1', 'a2']]);
+  late.sample(3, [5, 5], []);  // what it has seen itself is part of what the server has
+  late.load(m.trackOf(track));
+  assert.deepEqual(late.passes, live.passes);
+  for (const key of ['ball', 'a', 'b']) assert.deepEqual(late.heat(key).values, live.heat(key).values);
+  near(late.seconds, live.seconds);
+  near(late.heat('b').values.reduce((a, b) => a + b), 7, 0.21);
+  assert.equal(late.latest_s, live.latest_s);
+  // What is cut off, or no track at all, is as much as there is.
+  assert.equal(m.trackOf({ ...track, places: track.places.slice(0, 20) }).times.length, 2);
+  for (const bad of [null, 3, {}, { robots: 'x', times: [1, 2], places: 7, touches: 1, touch_times: [1] }]) assert.deepEqual([m.trackOf(bad).times, m.trackOf(bad).touches], [[], []]);
+});
+
 test('near a mark the pointer is at the mark, rather at a goal', () => {
   const marks = [{ time_s: 10, weight: 'call' }, { time_s: 10.6, weight: 'goal' }, { time_s: 30, weight: 'minor' }];
   assert.equal(m.markNear(marks, 10.1, 1).time_s, 10.6);

@@ -64,6 +64,7 @@ Program::Resumed Pipe::resume(const Observation& obs, Command&) {
 Program::Resumed Pipe::answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms,
                               Command& cmd) {
   switch (answer.kind) {
+    case OutsideAnswer::Kind::late:
     case OutsideAnswer::Kind::message: {
       ++state_.answers;
       auto read = read_answer(answer.text(), readings_, actuators_, forms, cmd);

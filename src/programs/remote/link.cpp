@@ -13,7 +13,7 @@ void Link::attach(Client client) {
   if (step_ && client_->counts) ++client_->counts->steps;
   given_up_ = false;
   answer_.reset();
-  told_ = false;
+  told_at_.reset();
   tell();
 }
 
@@ -22,7 +22,9 @@ void Link::detach(std::uint64_t claim, std::string why) {
   ended_claim_ = std::max(ended_claim_, claim);
   if (!client_ || client_->claim > claim) return;
   client_.reset();
-  if (step_ && !answer_) answer_ = Error{std::move(why)};
+  if (!step_ || answer_) return;
+  answer_ = Error{std::move(why)};
+  answered_at_ = Clock::now();
 }
 
 void Link::give_up() {
@@ -38,12 +40,13 @@ bool Link::given_up() const {
 Status Link::answer(std::uint64_t step, std::string text) {
   const std::lock_guard lock(mutex_);
   if (text.size() > most_answer) return Error{"an answer has at most 1 MiB"};
-  if (!step_ || !told_ || answer_)
+  if (!step_ || !told_at_ || answer_)
     return Error{"step " + std::to_string(step) + " does not wait for an answer"};
   if (step != step_->number)
     return Error{"step " + std::to_string(step_->number) + " waits for an answer, not " +
                  std::to_string(step)};
   answer_ = std::move(text);
+  answered_at_ = Clock::now();
   return {};
 }
 
@@ -54,7 +57,8 @@ void Link::release() {
 
 /// @pre the mutex is held
 void Link::tell() {
-  if (!step_ || !client_ || std::exchange(told_, true)) return;
+  if (!step_ || !client_ || told_at_) return;
+  told_at_ = Clock::now();
   client_->step(*step_);
 }
 
@@ -71,8 +75,13 @@ std::uint64_t Link::attachments() const {
 void Link::put(const Step& step) {
   const std::lock_guard lock(mutex_);
   step_ = step;
-  told_ = false;
+  told_at_.reset();
   answer_.reset();
+}
+
+std::optional<Link::Clock::time_point> Link::told_at() const {
+  const std::lock_guard lock(mutex_);
+  return told_at_;
 }
 
 void Link::count_step() {
@@ -87,14 +96,20 @@ void Link::count_miss() {
   if (client_ && client_->counts) ++client_->counts->misses;
 }
 
+void Link::count_answer() {
+  const std::lock_guard lock(mutex_);
+  ++counts_.answers;
+  if (client_ && client_->counts) ++client_->counts->answers;
+}
+
 void Link::refuse(const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (client_) client_->refused(why);
 }
 
-std::optional<Result<std::string>> Link::take() {
+std::optional<Result<std::string>> Link::take(Clock::time_point latest) {
   const std::lock_guard lock(mutex_);
-  if (!answer_) return std::nullopt;
+  if (!answer_ || answered_at_ > latest) return std::nullopt;
   step_.reset();
   return std::exchange(answer_, std::nullopt);
 }

@@ -9,6 +9,7 @@
 /// Waiting   who answers wakes the session: Session::wake().
 /// Limits    one answer waits at most; an answer has at most most_answer bytes.
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,15 +25,16 @@ namespace sandlot::programs::remote {
 class Link {
  public:
   static constexpr std::size_t most_answer = std::size_t{1} << 20;
+  using Clock = std::chrono::steady_clock;
 
   struct Step {
     std::uint64_t number = 0;
     Time now;
     std::uint64_t random = 0;  ///< of the program's own, one per step
   };
-  /// Steps that a client was to answer, and those of them without an answer in time. Read on any thread.
+  /// Steps that a client was to answer, those of them without an answer in time, and answers, late ones too. Read on any thread.
   struct Counts {
-    std::atomic<std::uint64_t> steps = 0, misses = 0;
+    std::atomic<std::uint64_t> steps = 0, misses = 0, answers = 0;
   };
 
   // --- for the server ---
@@ -65,12 +67,15 @@ class Link {
   /// Of all steps, whether or not somebody was attached.
   const Counts& counts() const { return counts_; }
   void put(const Step& step);
-  /// A control step begins; its answer did not come in time.
+  /// When the client was sent the step that waits; nothing: it was not.
+  std::optional<Clock::time_point> told_at() const;
+  /// A control step begins; its answer did not come in time; an answer came.
   void count_step();
   void count_miss();
+  void count_answer();
   void refuse(const std::string& why);
-  /// The answer that has come. An error: the client has gone without one.
-  std::optional<Result<std::string>> take();
+  /// The answer, if it came until `latest`, whenever it is taken. An error: the client has gone without one.
+  std::optional<Result<std::string>> take(Clock::time_point latest = Clock::time_point::max());
 
  private:
   void tell();
@@ -79,9 +84,11 @@ class Link {
   std::optional<Client> client_;
   std::uint64_t attachments_ = 0, ended_claim_ = 0;
   std::optional<Step> step_;  ///< that waits for its answer
-  bool told_ = false, given_up_ = false;
+  std::optional<Clock::time_point> told_at_;
+  bool given_up_ = false;
   Counts counts_;
   std::optional<Result<std::string>> answer_;
+  Clock::time_point answered_at_;
 };
 
 }  // namespace sandlot::programs::remote

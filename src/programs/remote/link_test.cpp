@@ -61,6 +61,23 @@ TEST(RemoteLink, AClaimThatHasEndedIsAttachedNoMore) {
   EXPECT_EQ(link.deadline_s(), 0.5);
 }
 
+/// The deadline is compared with the time of the answer, whenever the simulation comes to take it.
+TEST(RemoteLink, AnAnswerIsTakenByTheTimeAtWhichItCame) {
+  Link link;
+  Heard heard;
+  link.attach(heard.client(1));
+  link.put({.number = 7});
+  EXPECT_FALSE(link.told_at());
+  const auto before = Link::Clock::now();
+  link.release();
+  EXPECT_GE(link.told_at(), before);
+  EXPECT_TRUE(link.answer(7, "{}"));
+  EXPECT_FALSE(link.take(before - std::chrono::milliseconds(1)));
+  EXPECT_EQ(**link.take(Link::Clock::now()), "{}");
+  link.put({.number = 8});
+  EXPECT_FALSE(link.told_at()) << "not sent yet";
+}
+
 TEST(RemoteLink, GivingUpHoldsUntilAClientComes) {
   Link link;
   Heard heard;

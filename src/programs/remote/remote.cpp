@@ -18,7 +18,7 @@ Status Remote::init(const Description& robot, const Node& config, Outputs&) {
 
 Status Remote::connect() {
   connected_ = true;
-  waiting_ = gave_up_ = false;
+  waiting_ = gave_up_ = behind_ = false;
   return {};
 }
 
@@ -29,13 +29,15 @@ void Remote::adopt(Outside& before) {
   waiting_ = old.waiting_;
   gave_up_ = old.gave_up_;
   known_attachments_ = old.known_attachments_;
+  behind_ = old.behind_;
   extended_ = old.extended_;
   step_ = old.step_;
   begun_ = old.begun_;
   deadline_ = old.deadline_;
 }
 
-/// From the step on; of the first one, until a client has come.
+/// From the step on; of the first one, until a client has come. A client's time begins when it is sent the step: what others do
+/// before that is not its own time.
 void Remote::set_deadline() {
   const auto wall = [](double s) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
@@ -43,10 +45,11 @@ void Remote::set_deadline() {
   const std::optional<double> client_s = link_->deadline_s();
   if (const std::uint64_t came = link_->attachments(); came != known_attachments_) {
     known_attachments_ = came;
-    gave_up_ = false;
-    // Its time begins when it has come; once, or who claims again and again would hold up the run.
-    if (client_s && !std::exchange(extended_, true)) begun_ = Clock::now();
+    gave_up_ = behind_ = false;
   }
+  // Once, or who claims again and again would hold up the run.
+  if (const auto told = link_->told_at(); client_s && told && *told > begun_)
+    if (!std::exchange(extended_, true)) begun_ = *told;
   if (client_s) deadline_ = begun_ + wall(std::min(*client_s, spec_.deadline_s));
   else if (gave_up_ || known_attachments_ > 0 || link_->given_up()) deadline_ = begun_;
   else deadline_ = begun_ + wall(spec_.patience_s);
@@ -59,7 +62,8 @@ Program::Resumed Remote::resume(const Observation& obs, Command&) {
     link_->count_step();
     extended_ = false;
     Stream random = obs.random();
-    if (!std::exchange(waiting_, true)) link_->put({step_++, obs.now(), random.bits64()});
+    behind_ = std::exchange(waiting_, true);
+    if (!behind_) link_->put({step_++, obs.now(), random.bits64()});
     set_deadline();
   }
   return {.waiting_for = Waiting::outside};
@@ -67,12 +71,14 @@ Program::Resumed Remote::resume(const Observation& obs, Command&) {
 
 std::optional<OutsideAnswer> Remote::receive() {
   if (!connected_) return std::nullopt;
-  auto answer = link_->take();
+  const Clock::time_point before = deadline_;  // it may have answered and gone since
   set_deadline();
+  auto answer = link_->take(std::max(before, deadline_));
   if (!answer) return std::nullopt;
   waiting_ = false;
-  if (*answer) return OutsideAnswer::of(OutsideAnswer::Kind::message, **answer);
-  return OutsideAnswer{OutsideAnswer::Kind::message, {}};  // it went away: nothing is ordered
+  if (!*answer) return OutsideAnswer{OutsideAnswer::Kind::message, {}};  // it went away: nothing is ordered
+  link_->count_answer();
+  return OutsideAnswer::of(behind_ ? OutsideAnswer::Kind::late : OutsideAnswer::Kind::message, **answer);
 }
 
 Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const TopicBase* const> forms,
@@ -86,6 +92,10 @@ Program::Resumed Remote::answer(const OutsideAnswer& answer, std::span<const Top
     return {};
   };
   switch (answer.kind) {
+    case OutsideAnswer::Kind::late:
+      ++state_.misses;
+      if (connected_) link_->count_miss();
+      [[fallthrough]];
     case OutsideAnswer::Kind::message: {
       if (answer.bytes.empty()) return miss("the client has gone");
       ++state_.answers;

@@ -7,8 +7,9 @@
 ///
 /// Lockstep     in each control step the client is told of the step, when the messages of the tick are on their way to it, and
 ///              its answer (programs/answer.h) acts at the beginning of the next tick, as the orders of every controller do.
-/// Deadline     in wall time from the step on: the client's own, at most `deadline`. An answer that comes later acts with
-///              the next step. Until it has come the client is told of no other step; `on_miss` is what the robot does meanwhile.
+/// Deadline     in wall time from when the client is sent the step: its own, at most `deadline`, whoever else is waited for. An
+///              answer that comes later acts with the next step, which counts as missed as well: the client is sent no other step
+///              until it has answered; `on_miss` is what the robot does meanwhile.
 /// No client    the first step waits up to `patience` for one to come; after that none waits until one has. Steps without a
 ///              client count as missed.
 /// Free running clients that give no word of lockstep send commands, which act in the tick after they came. With
@@ -82,7 +83,7 @@ struct State {
   std::uint64_t answers = 0, misses = 0, refused = 0;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"answers", "1", "Number of answers."}, s.answers);
+    visit(Field{"answers", "1", "Number of answers, late ones too."}, s.answers);
     visit(Field{"misses", "1", "Number of steps without an answer in time."}, s.misses);
     visit(Field{"refused", "1", "Number of answers that could not be carried out."}, s.refused);
   }
@@ -117,7 +118,8 @@ class Remote final : public OutsideProgram<Spec, State> {
   // The connection; none of it is State.
   std::shared_ptr<Link> link_ = std::make_shared<Link>();
   bool connected_ = false, waiting_ = false, gave_up_ = false;
-  bool extended_ = false;  ///< the step's time has begun once more, with its client
+  bool behind_ = false;    ///< the answer that is awaited is that of an earlier step
+  bool extended_ = false;  ///< the step's time has begun once more, when its client was sent it
   std::uint64_t known_attachments_ = 0;
   std::uint64_t step_ = 0;
   Clock::time_point begun_, deadline_;

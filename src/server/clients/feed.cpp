@@ -19,7 +19,8 @@ Feed::Feed(Session& session, std::shared_ptr<Mailbox> mailbox, wire::Assets asse
       world_writer_(std::move(assets)),
       period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / poses_hz))),
       step_feed_(session, mailbox_),
-      decisions_(session) {}
+      decisions_(session),
+      match_(session) {}
 
 void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary) {
   subscribed_ = std::move(summary);
@@ -30,6 +31,7 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
   }
   step_feed_.send_to(subscribed_->step_times);
   decisions_.attach();
+  match_.attach();
   if (!subscribed_->clients) {
     topics_.clear();
     watches_.clear();
@@ -47,6 +49,7 @@ void Feed::set_subscriptions(std::shared_ptr<const SubscriptionSummary> summary)
 void Feed::detach() {
   set_subscriptions(std::make_shared<SubscriptionSummary>());
   decisions_.detach();
+  match_.detach();
 }
 
 void Feed::follow_session() {

@@ -13,6 +13,7 @@
 #include "server/clients/decision_log.h"
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
+#include "server/clients/match_track.h"
 #include "server/clients/step_feed.h"
 #include "server/http/transport.h"
 #include "sim/session/session.h"
@@ -68,6 +69,7 @@ class Feed final : public Observer {
   void unwatch(std::uint32_t channel);
 
   DecisionLog& decisions() { return decisions_; }
+  MatchTrack& match() { return match_; }
 
   /// A program whose client is told of each step behind the messages of its tick.
   void add_link(std::shared_ptr<programs::remote::Link> link);
@@ -127,6 +129,7 @@ class Feed final : public Observer {
   std::vector<std::shared_ptr<programs::remote::Link>> links_;
   StepFeed step_feed_;
   DecisionLog decisions_;
+  MatchTrack match_;
   std::vector<std::byte> scratch_;
   std::vector<FrameDelivery> deliveries_;  ///< that were not sent yet
   Payload batteries_;                      ///< as last sent

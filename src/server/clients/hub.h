@@ -257,6 +257,7 @@ class Hub final : private ServiceHost {
   void watch(ClientId id, const std::vector<std::string>& values, double rate_hz, WatchDone done) override;
   void decisions(const std::string& topic,
                  std::function<void(std::vector<msg::RefereeDecision>)> done) override;
+  void match_track(std::function<void(const msg::MatchTrack::Response&)> done) override;
   Memory& memory() override { return memory_; }
   std::function<void(std::function<void()>)> way_back() override;
   void open_watch(ClientId id, std::uint32_t channel_id, std::size_t values, const Status& status,

@@ -152,6 +152,10 @@ void Hub::decisions(const std::string& topic, std::function<void(std::vector<msg
   post([feed = feed_, topic, done = std::move(done)](Session&) { done(feed->decisions().decisions(topic)); });
 }
 
+void Hub::match_track(std::function<void(const msg::MatchTrack::Response&)> done) {
+  post([feed = feed_, done = std::move(done)](Session&) { done(feed->match().track()); });
+}
+
 void Hub::wait(std::function<std::optional<Status>(const Session::Report&)> reached,
                std::function<void(const Status&)> done) {
   waiting_.push_back({std::move(reached), std::move(done), report_.tick, Clock::now()});

@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "assets/image/visible.h"
 #include "messages/messages.h"
 #include "server/clients/decision_log.h"
 #include "server/clients/inventory.h"
 #include "server/clients/mailbox.h"
+#include "server/clients/match_track.h"
 #include "server/clients/parameters.h"
 #include "server/clients/preview.h"
 #include "sim/test_world.h"
@@ -67,6 +70,69 @@ TEST(DecisionLog, LosesTheOldestOfVeryMany) {
   ASSERT_EQ(latest.size(), most_decisions);
   EXPECT_EQ(latest.front().sequence, 6u);
   EXPECT_EQ(latest.back().sequence, most_decisions + 5);
+}
+
+/// One second of a run of two robots of two teams; the referee's states are the test's.
+struct TrackOfASecond {
+  static model::Setup setup() {
+    model::Setup out = sandlot::test::arena("rigid", 2, "");
+    for (model::Instance& each : out.instances)
+      if (each.is_robot) each.team = each.name == "rover1" ? "cyan" : "magenta";
+    return out;
+  }
+  TrackOfASecond() : session(sandlot::test::build(setup()), {}), kept(session) {
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(session.simulation().tick());
+  }
+  void take(double at_s, const std::string& last_touch, bool in_play = true) {
+    msg::RefereeState state;
+    state.in_play = in_play;
+    state.last_touch = last_touch;
+    kept.take(Time::from_s(at_s), state);
+  }
+  Session session;
+  MatchTrack kept;
+};
+
+TEST(MatchTrack, KeepsPlacesFiveTimesASecondOfPlayAndEachTouch) {
+  TrackOfASecond of;
+  of.take(0.1, "", false);
+  of.take(0.2, "rover1");
+  of.take(0.3, "rover1");  // not due
+  of.take(0.35, "rover2");
+  of.take(0.4, "rover2");
+  of.take(0.7, "rover2", false);
+  of.take(0.8, "rover1");
+  of.take(0.2, "rover2");  // again, after a jump back in a recording: known
+  const msg::MatchTrack::Response track = of.kept.track();
+  EXPECT_EQ(track.robots, (std::vector<std::string>{"rover1", "rover2"}));
+  EXPECT_EQ(track.teams, (std::vector<std::string>{"cyan", "magenta"}));
+  EXPECT_EQ(track.times, (std::vector<double>{0.2, 0.4, 0.8}));
+  EXPECT_EQ(track.touch_times, (std::vector<double>{0.2, 0.35, 0.7, 0.8}));
+  EXPECT_EQ(track.touches, (std::vector<std::string>{"rover1", "rover2", "", "rover1"}));
+  ASSERT_EQ(track.places.size(), 3u * 6);
+  const Simulation& simulation = of.session.simulation();
+  for (std::size_t i = 0; i < track.places.size(); i += 6) {
+    EXPECT_EQ(track.places[i], std::numeric_limits<std::int32_t>::min()) << "there is no ball";
+    for (std::size_t robot = 0; robot < 2; ++robot) {
+      const Vec3 at = simulation.engine().pose(simulation.find_entity(track.robots[robot])->id).p;
+      EXPECT_NEAR(track.places[i + 2 + 2 * robot], 1000 * at.x, 0.5);
+      EXPECT_NEAR(track.places[i + 3 + 2 * robot], 1000 * at.y, 0.5);
+    }
+  }
+}
+
+TEST(MatchTrack, ForgetsTheCourseThatTheRunHasLeft) {
+  TrackOfASecond of;
+  of.take(0.9, "rover1");
+  of.take(1.5, "rover2");  // later than now: the run has gone back behind it
+  EXPECT_EQ(of.kept.track().times, std::vector<double>{0.9});
+  EXPECT_EQ(of.kept.track().touches, std::vector<std::string>{"rover1"});
+  EXPECT_TRUE(of.session.simulation().tick());
+  of.take(1.01, "rover2");
+  of.take(1.2, "rover2");
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(of.session.simulation().tick());
+  EXPECT_EQ(of.kept.track().times, (std::vector<double>{0.9, 1.2}));
+  EXPECT_EQ(of.kept.track().touch_times, (std::vector<double>{0.9, 1.01}));
 }
 
 TEST(Mailbox, LosesTheOldestMessagesWhenItIsFullButNotWhatCameFromOutside) {

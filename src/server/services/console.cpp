@@ -38,6 +38,11 @@ void decisions(const ServiceContext& context, const msg::Decisions::Request& req
                          [reply](std::vector<msg::RefereeDecision> found) { reply({std::move(found)}); });
 }
 
+void match_track(const ServiceContext& context, const msg::MatchTrack::Request&,
+                 const Reply<msg::MatchTrack>& reply) {
+  context.host.match_track([reply](const msg::MatchTrack::Response& track) { reply(track); });
+}
+
 void disconnect_client(const ServiceContext& context, const msg::DisconnectClient::Request& request,
                        const Reply<msg::DisconnectClient>& reply) {
   const Status status = context.host.disconnect(request.client);

@@ -48,6 +48,8 @@ class ServiceHost {
   /// Decisions of referees so far. @param done  called on the simulation's thread
   virtual void decisions(const std::string& topic,
                          std::function<void(std::vector<msg::RefereeDecision>)> done) = 0;
+  /// Track of the match so far. @param done  called on the simulation's thread
+  virtual void match_track(std::function<void(const msg::MatchTrack::Response&)> done) = 0;
   /// What services know of the run from calls before; on the transport's thread.
   struct Memory {
     std::string world;  ///< file of the world; "": it has none

@@ -95,8 +95,8 @@ class Programs {
   /// Waits until those that stepped in this tick have answered or their deadlines are over. What came is input of the next
   /// tick: an AnswerRequest each. To be called outside of parallel work.
   void await_answers();
-  /// Of those that clients answer, without waiting: takes what has come. @return until when an answer is awaited; nothing: no
-  /// longer, and the next tick may begin
+  /// Of those that clients answer, without waiting: takes what has come; whose deadline is over has missed it. @return the next
+  /// deadline; nothing: no answer is awaited, and the next tick may begin
   std::optional<Outside::Clock::time_point> await_clients();
   /// At the beginning of a tick: clients that have not answered have missed it.
   void end_waiting_for_clients();
@@ -145,6 +145,7 @@ class Programs {
   void ask_again(ProgramEntry& entry, Time now);
   void submit_answer(const ProgramEntry& entry, OutsideAnswer answer);
   bool take_answers(ProgramEntry& entry);
+  bool take_or_miss(ProgramEntry& entry);
   static void take(ProgramEntry& entry, Program::Resumed resumed);
   static Error failure_of(const ProgramEntry& entry, Time now);
   void prefetch_orders(std::size_t i) const;

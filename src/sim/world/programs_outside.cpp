@@ -76,14 +76,23 @@ bool Programs::take_answers(ProgramEntry& entry) {
   return true;
 }
 
+/// Takes what has come, or that nothing came until its own deadline, however long others are waited for after that.
+/// @return whether nothing more is awaited
+bool Programs::take_or_miss(ProgramEntry& entry) {
+  if (take_answers(entry)) return true;
+  if (Outside::Clock::now() < entry.program->outside()->deadline()) return false;
+  submit_answer(entry, {OutsideAnswer::Kind::missed, {}});
+  return true;
+}
+
 std::optional<Outside::Clock::time_point> Programs::await_clients() {
-  std::erase_if(awaited_clients_, [&](ProgramEntry* entry) { return take_answers(*entry); });
-  std::optional<Outside::Clock::time_point> latest;
+  std::erase_if(awaited_clients_, [&](ProgramEntry* entry) { return take_or_miss(*entry); });
+  std::optional<Outside::Clock::time_point> next;
   for (ProgramEntry* const entry : awaited_clients_) {
     const auto deadline = entry->program->outside()->deadline();
-    if (Outside::Clock::now() < deadline) latest = latest ? std::min(*latest, deadline) : deadline;
+    next = next ? std::min(*next, deadline) : deadline;
   }
-  return latest;
+  return next;
 }
 
 void Programs::end_waiting_for_clients() {
@@ -99,25 +108,19 @@ void Programs::await_answers() {
   std::vector<pollfd> polled;
   while (true) {
     // In the order of the programs, so that what is there in time has one order.
-    std::erase_if(awaited_, [&](ProgramEntry* entry) {
-      if (take_answers(*entry)) return true;
-      if (Clock::now() < entry->program->outside()->deadline()) return false;
-      submit_answer(*entry, {OutsideAnswer::Kind::missed, {}});
-      return true;
-    });
+    std::erase_if(awaited_, [&](ProgramEntry* entry) { return take_or_miss(*entry); });
     if (awaited_.empty()) return;
+    Clock::time_point deadline = Clock::time_point::max();
+    for (ProgramEntry* const entry : awaited_)
+      deadline = std::min(deadline, entry->program->outside()->deadline());
     // The first of those that no descriptor tells of; the others run meanwhile.
-    const bool waited = std::any_of(awaited_.begin(), awaited_.end(), [](ProgramEntry* entry) {
+    const bool waited = std::any_of(awaited_.begin(), awaited_.end(), [&](ProgramEntry* entry) {
       auto* const surrounded = dynamic_cast<programs::Surrounded*>(entry->program.get());
-      return surrounded && surrounded->await(entry->program->outside()->deadline());
+      return surrounded && surrounded->await(deadline);
     });
     if (waited) continue;
     watched.clear();
-    Clock::time_point deadline = Clock::time_point::max();
-    for (ProgramEntry* const entry : awaited_) {
-      entry->program->outside()->watched(watched);
-      deadline = std::min(deadline, entry->program->outside()->deadline());
-    }
+    for (ProgramEntry* const entry : awaited_) entry->program->outside()->watched(watched);
     polled.clear();
     for (const Outside::Watched& each : watched)
       polled.push_back({each.descriptor, static_cast<short>(each.writing ? POLLOUT : POLLIN), 0});

@@ -3,12 +3,12 @@ import type {Client} from '../net/client';
 import {Signal} from '../net/signal';
 import type {SceneView} from '../scene/scene';
 import {teamColor} from '../ui/teams';
-import {decisionOf, decisionType, DecisionBook, Dimensions, dimensionsOf, gameOf, GameState, lengthOfField, Spot, stateType, Tally, TimeMark, titleOf, weightOf} from './match';
+import {decisionOf, decisionType, DecisionBook, Dimensions, dimensionsOf, gameOf, GameState, lengthOfField, Spot, stateType, Tally, TimeMark, titleOf, trackOf, weightOf} from './match';
 import type {Decision} from './match';
 import type {Store} from './store';
 
-const service = '/sandlot/decisions';
-const period_s = 0.2;
+const service = '/sandlot/decisions', track_service = '/sandlot/match_track';
+const period_s = 0.2, gap_s = 1, track_pause_ms = 10_000;
 const fallback_colors = ['#12a5c9', '#d6189b'];
 
 export class Game {
@@ -25,6 +25,10 @@ export class Game {
   private asked = 0;
   private fetched = '';
   private sampled_s = Number.NEGATIVE_INFINITY;
+  private seen_s = Number.NEGATIVE_INFINITY;  // time of the latest poses
+  private gap = false;  // something was not seen that the server has
+  private tracks_asked = 0;
+  private track_asked_ms = Number.NEGATIVE_INFINITY;
   private seeking = false;
 
   constructor(private readonly client: Client, private readonly store: Store, private readonly scene: SceneView) {
@@ -117,6 +121,7 @@ export class Game {
     if (log_topic !== '' && this.client.services.has(service) && this.fetched !== log_topic) {
       this.fetched = log_topic;
       void this.fetch(log_topic);
+      void this.fetchTrack();
     }
   }
 
@@ -132,6 +137,23 @@ export class Game {
     }
   }
 
+  /** Maps of what was before the page was opened, and while it did not look. */
+  private async fetchTrack(): Promise<void> {
+    if (!this.client.services.has(track_service)) return;
+    const asked = ++this.tracks_asked;
+    this.track_asked_ms = performance.now();
+    this.gap = false;
+    try {
+      const answer = await this.client.call(track_service, {});
+      if (asked !== this.tracks_asked) return;
+      this.tally.load(trackOf(answer));
+      this.sampled_s = this.tally.latest_s;
+      this.onLog.emit(null);
+    } catch {
+      // What the page sees from now on makes the maps.
+    }
+  }
+
   private add(decision: Decision): void {
     if (this.book.add(decision)) this.onLog.emit(decision);
   }
@@ -143,6 +165,10 @@ export class Game {
   }
 
   private sample(time_s: number): void {
+    // A window in the background sees nothing, a quick run little, and one that jumps nothing of its way.
+    if (time_s > this.seen_s + gap_s && this.seen_s > Number.NEGATIVE_INFINITY) this.gap = true;
+    this.seen_s = time_s;
+    if (this.gap && performance.now() > this.track_asked_ms + track_pause_ms) void this.fetchTrack();
     if (time_s < this.sampled_s) {
       this.tally.forgetAfter(time_s);
       this.sampled_s = Number.NEGATIVE_INFINITY;

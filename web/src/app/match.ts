@@ -285,6 +285,11 @@ export class Tally {
     this.toucher = this.last_ball = null;
   }
 
+  /** Time of the latest places; minus infinity: there are none. */
+  get latest_s(): number {
+    return this.frames[this.frames.length - 1]?.time_s ?? Number.NEGATIVE_INFINITY;
+  }
+
   get seconds(): number {
     return this.frames.reduce((sum, f) => sum + f.weight_s, 0);
   }
@@ -340,6 +345,22 @@ export class Tally {
     this.passes.push({time_s, team, from: before.robot, to: robot, begin: before.at, end: this.last_ball});
   }
 
+  /** All of a match so far, in place of what was counted until now. */
+  load(track: Track): void {
+    this.clear();
+    const teamOf = (robot: string): string => track.teams.get(robot) ?? '';
+    let next = 0;
+    const touchBefore = (time_s: number): void => {
+      for (let touch = track.touches[next]; touch && touch.time_s < time_s; touch = track.touches[++next]) this.touch(touch.time_s, touch.robot, touch.robot !== '', teamOf);
+    };
+    track.times.forEach((time_s, i) => {
+      const {ball, robots} = track.places[i] as Track['places'][number];
+      touchBefore(time_s);
+      this.sample(time_s, ball, robots);
+    });
+    touchBefore(Number.POSITIVE_INFINITY);
+  }
+
   /** @param key  'ball', or the name of a team */
   heat(key: string): HeatGrid {
     let grid = this.grids.get(key);
@@ -350,6 +371,34 @@ export class Tally {
     }
     return grid;
   }
+}
+
+const absent_mm = -2147483648;
+
+export interface Track {
+  times: number[];
+  places: {ball: Spot | null; robots: {name: string; team: string; at: Spot}[]}[];
+  touches: {time_s: number; robot: string}[];
+  teams: Map<string, string>;
+}
+
+/** What the server has kept of a match (`/sandlot/match_track`): lists of one length each, or as much of them as fits together. */
+export function trackOf(value: unknown): Track {
+  const m = bag(value);
+  const robots = list(m.robots).map(text), teams = list(m.teams).map(text), mm = list(m.places).map(number);
+  const width = 2 + 2 * robots.length;
+  const times = list(m.times).map(number).slice(0, Math.floor(mm.length / width));
+  const spotAt = (at: number): Spot | null => (mm[at] === absent_mm ? null : [(mm[at] as number) / 1000, (mm[at + 1] as number) / 1000]);
+  const places = times.map((_, i) => ({
+    ball: spotAt(i * width),
+    robots: robots.flatMap((name, r) => {
+      const at = spotAt(i * width + 2 + 2 * r);
+      return at ? [{name, team: teams[r] ?? '', at}] : [];
+    }),
+  }));
+  const who = list(m.touches).map(text);
+  const touches = list(m.touch_times).map(number).slice(0, who.length).map((time_s, i) => ({time_s, robot: who[i] as string}));
+  return {times, places, touches, teams: new Map(robots.map((name, r) => [name, teams[r] ?? '']))};
 }
 
 // --- marks on the time line

@@ -179,11 +179,11 @@ export class MatchPanel implements Panel {
       const passes = game.tally.passes;
       field.showPasses(passes.slice(-most_passes), color);
       const counts = (game.state?.teams ?? []).map((t) => `${t.name} ${passes.filter((p) => p.team === t.name).length}`);
-      caption = `Passes since this page looks on: ${counts.join(', ')}`;
+      caption = `Passes so far: ${counts.join(', ')}`;
     } else {
       const key = this.view === 'ball' ? 'ball' : this.view.slice(5);
       field.showHeat(game.tally.heat(key), key === 'ball' ? ball_rgb : rgbOf(color(key)));
-      caption = `${key === 'ball' ? 'Ball' : `Robots of ${key}`} in ${clockText(game.tally.seconds)} of play since this page looks on`;
+      caption = `${key === 'ball' ? 'Ball' : `Robots of ${key}`} in ${clockText(game.tally.seconds)} of play`;
     }
     setText(this.captionText, caption);
     setTitle(this.captionText, caption);
