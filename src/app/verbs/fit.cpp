@@ -40,6 +40,7 @@ struct Compared {
   ValuePath steps;
   std::optional<double> given_scale;
   double scale = 1;
+  bool adds_up = false;  ///< a pose of dead reckoning, whose covariance grows: its errors are not independent
   std::vector<std::pair<std::int64_t, double>> recorded;  ///< stamp [ns] and value, ascending
 };
 
@@ -201,6 +202,9 @@ Status read_compared(Problem& problem) {
     SL_ASSIGN(const DynamicSchema types, DynamicSchema::parse(schema->name, words));
     mcap::Cursor cursor = reader.messages({.topics = {c.topic}});
     std::vector<std::string> known;
+    const bool is_pose = schema->name == "nav_msgs/msg/Odometry" && c.path.starts_with("pose.pose.");
+    std::optional<double> first_variance;
+    double variance = 0;  // of the place, in the latest message
     while (true) {
       SL_ASSIGN(const mcap::Message* const message, cursor.next());
       if (!message) break;
@@ -209,15 +213,20 @@ Status read_compared(Problem& problem) {
         continue;
       SL_TRY(visit_values(types.info(), message->data, [&](std::string_view path, const MessageValue& value) {
         if (known.size() < 1000) known.emplace_back(path);
-        if (path != c.path) return;
-        if (const auto* x = std::get_if<double>(&value)) c.recorded.emplace_back(stamp, *x);
+        const auto* const x = std::get_if<double>(&value);
+        if (x && path == c.path) c.recorded.emplace_back(stamp, *x);
+        if (x && path == "pose.covariance[0]") variance = *x;
+        if (x && path == "pose.covariance[7]") variance += *x;
       }));
+      if (!first_variance) first_variance = variance;
     }
+    constexpr double growth = 1.5;
+    c.adds_up = is_pose && variance > growth * first_variance.value_or(variance);
     if (c.recorded.empty())
       return of_file(file, "'" + c.topic + "' has no number '" + c.path + "' in that time",
                      suggestion(c.path, known));
     const auto deviation = deviation_of(c);
-    if (problem.options.compare.empty() && !deviation) continue;
+    if (problem.options.compare.empty() && (!deviation || c.adds_up)) continue;
     c.scale = c.given_scale.value_or(deviation.value_or(1));
     problem.compared.push_back(std::move(c));
   }
@@ -426,6 +435,11 @@ Json fit_json(const Problem& problem, const LeastSquares& fitted) {
          {"values", problem.compared[i].recorded.size()},
          {"rms_before", rms(problem, fitted.first, i)},
          {"rms_after", rms(problem, fitted.last, i)}});
+  for (const Compared& each : problem.compared)
+    if (each.adds_up)
+      notes.push_back(each.topic + "." + each.path +
+                      " is dead reckoning, whose errors add up: values and intervals are not to be trusted; "
+                      "compare speeds of it: twist.twist");
   if (!fitted.converged) notes.push_back("the search was ended before it converged; --runs allows more");
   json["parameters"] = parameters;
   json["correlation"] = fitted.correlation;
