@@ -47,7 +47,9 @@ void Programs::ask_again(ProgramEntry& entry, Time now) {
   } else if (!entry.program->outside()->expects_answer()) {
     return;
   }
-  (entry.program->outside()->is_client() ? awaited_clients_ : awaited_).push_back(&entry);
+  auto& awaited = entry.program->outside()->is_client() ? awaited_clients_ : awaited_;
+  // A step that was due before it was connected is awaited already: it would be missed twice.
+  if (std::find(awaited.begin(), awaited.end(), &entry) == awaited.end()) awaited.push_back(&entry);
 }
 
 void Programs::submit_answer(const ProgramEntry& entry, OutsideAnswer answer) {
