@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "app/papers/eyesim.h"
-#include "assets/image/write.h"
-#include "base/base64.h"
+#include "app/papers/pictures.h"
 #include "base/math.h"
 #include "draw/plan.h"
 #include "draw/plot.h"
@@ -144,37 +143,7 @@ Result<Pictures> pictures(const Report& report, const std::string& file, double 
   return out;
 }
 
-struct Tile {
-  std::string title;
-  int width, height;
-  std::span<const std::uint8_t> rgb;
-};
-
-/// Pictures side by side, `columns` in a row, as one SVG.
-std::string picture_svg(const std::vector<Tile>& tiles, int columns) {
-  constexpr int gap = 12, line = 24;
-  const int count = static_cast<int>(tiles.size());
-  const int width = tiles[0].width, height = tiles[0].height;
-  const int rows = (count + columns - 1) / columns;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "font-family=\"sans-serif\" font-size=\"15\">",
-      columns * width + (columns - 1) * gap, rows * (height + line) + (rows - 1) * gap);
-  for (int i = 0; i < count; ++i) {
-    const Tile& tile = tiles[static_cast<std::size_t>(i)];
-    const std::string png = assets::png_of({tile.width, tile.height, 3, tile.rgb});
-    const int x = i % columns * (width + gap), y = i / columns * (height + line + gap);
-    out += fmt::format(
-        "<text x=\"{}\" y=\"{}\">{}</text><image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
-        "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,",
-        x, y + 17, draw::xml_text(tile.title), x, y + line, width, height);
-    add_base64(std::as_bytes(std::span(png)), out);
-    out += "\"/>";
-  }
-  return out + "</svg>\n";
-}
-
-Tile tile_of(std::string title, const msg::Image& image) {
+PictureTile tile_of(std::string title, const msg::Image& image) {
   return {std::move(title), static_cast<int>(image.width), static_cast<int>(image.height), image.data};
 }
 
@@ -224,10 +193,8 @@ Status cameras(const Report& report, std::vector<Check>& all) {
   report.page.paragraph(
       "A program takes pictures by CAMGet and shows them on its screen by LCDImage, from which the pictures "
       "below are taken: 320 x 240 pixels, as programs have them.");
-  report.page.figure(
-      picture_svg({{"The room", original.overview.width, original.overview.height, original.overview.rgb}},
-                  1),
-      "The room as a person sees it: in front the robot with the camera.");
+  report.page.figure(picture_svg({app::tile_of(original.overview)}, 1),
+                     "The room as a person sees it: in front the robot with the camera.");
   std::vector<Check> checks;
   SL_ASSIGN(const Pictures gaussian, pictures(report, "gaussian.sim", 1, count));
   checks.push_back(grey_level_check(exact, gaussian, 10));

@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/papers/mario.h"
-#include "assets/image/write.h"
-#include "base/base64.h"
+#include "app/papers/pictures.h"
 #include "base/math.h"
 #include "draw/graph.h"
 
@@ -232,16 +231,6 @@ Status figure_15a(Report& report, const LoggedRun& run) {
   return {};
 }
 
-std::string svg_of(const assets::Picture& picture) {
-  const std::string png = assets::png_of({picture.width, picture.height, 3, picture.rgb});
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\"><image "
-      "width=\"{0}\" height=\"{1}\" href=\"data:image/png;base64,",
-      picture.width, picture.height);
-  add_base64(std::as_bytes(std::span(png)), out);
-  return out + "\"/></svg>\n";
-}
-
 /// Topics with a node at both ends, and their nodes, without the name of the robot.
 draw::Graph drawing_of(const TopicGraph& all) {
   draw::Graph out;
@@ -325,7 +314,7 @@ Status loop(Report& report) {
         "--quick leaves out the run of 84 s with its paths and errors. In the paper the filtered odometry "
         "ends 0.3 m from the start.");
   else SL_TRY(figure_15a(report, run));
-  report.figure("figure_15b", svg_of(run.picture),
+  report.figure("figure_15b", picture_svg({tile_of(run.picture)}, 1),
                 "Figure 15 (b): the simulated vineyard with MARIO at the start of the loop.");
   figure_16(report, run.graph);
   report.files.emplace_back("topics.json", json_of(run.graph));

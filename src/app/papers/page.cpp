@@ -26,19 +26,30 @@ std::string with_added(std::string_view text, std::string_view place, std::strin
   return out.append(text);
 }
 
+/// Escaped, with what stands between two backticks as code; a backtick without another one stays.
+std::string marked_up(std::string_view text) {
+  std::string out;
+  for (std::size_t begin; (begin = text.find('`')) != std::string_view::npos;) {
+    const std::size_t end = text.find('`', begin + 1);
+    if (end == std::string_view::npos) break;
+    out += draw::xml_text(text.substr(0, begin));
+    out += "<code>" + draw::xml_text(text.substr(begin + 1, end - begin - 1)) + "</code>";
+    text.remove_prefix(end + 1);
+  }
+  return out + draw::xml_text(text);
+}
+
 }  // namespace
 
 ReportPage::ReportPage(std::string_view title, std::string_view source) : title_(title) {
-  body_ = fmt::format("<h1>{}</h1>\n<p>{}</p>\n", draw::xml_text(title), draw::xml_text(source));
+  body_ = fmt::format("<h1>{}</h1>\n<p>{}</p>\n", draw::xml_text(title), marked_up(source));
 }
 
 void ReportPage::heading(std::string_view text) {
   body_ += fmt::format("<h2>{}</h2>\n", draw::xml_text(text));
 }
 
-void ReportPage::paragraph(std::string_view text) {
-  body_ += fmt::format("<p>{}</p>\n", draw::xml_text(text));
-}
+void ReportPage::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", marked_up(text)); }
 
 void ReportPage::table(const std::vector<std::string>& names,
                        const std::vector<std::vector<std::string>>& rows) {
@@ -58,7 +69,7 @@ void ReportPage::rich_table(const std::vector<std::string>& names,
   for (const auto& row : rows) {
     body_ += "<tr>";
     for (const Cell& cell : row) {
-      std::string text = draw::xml_text(cell.text);
+      std::string text = cell.is_command ? draw::xml_text(cell.text) : marked_up(cell.text);
       if (cell.is_command) text = "<code>" + text + "</code>";
       if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", draw::xml_text(cell.link), text);
       body_ += "<td>" + text + "</td>";
@@ -74,7 +85,7 @@ void ReportPage::figure(std::string_view svg, std::string_view caption) {
   const std::string number = fmt::format("f{}-", ++figures_);
   std::string own = with_added(svg, " id=\"", number);
   for (const char* const use : {"url(#", "href=\"#"}) own = with_added(own, use, number);
-  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", own, draw::xml_text(caption));
+  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", own, marked_up(caption));
 }
 
 std::string ReportPage::html() const {

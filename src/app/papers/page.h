@@ -1,5 +1,6 @@
 #pragma once
-/// Report page: one HTML file with text, tables and SVG figures in it, which needs no network.
+/// Report page: one HTML file with text, tables and SVG figures in it, which needs no network. Words between backticks, in paragraphs,
+/// cells and captions, are set as code.
 #include <string>
 #include <string_view>
 #include <vector>

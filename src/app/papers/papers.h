@@ -14,6 +14,10 @@
 #include "run/step_times_file.h"
 #include "sim/watch/topic_graph.h"
 
+namespace sandlot {
+class Simulation;
+}
+
 namespace sandlot::app {
 
 /// A condition of an experiment: one scenario, with its overrides, run again and again.
@@ -26,10 +30,11 @@ struct Condition {
 /// One run of a condition with named values in each sample.
 struct LoggedRunSpec {
   Condition condition;
-  std::vector<std::string> values;             ///< as --log-values takes them
-  std::optional<double> rate_hz;               ///< of the samples; unset: each tick
-  std::optional<double> duration_s;            ///< unset: as the scenario says
-  std::optional<draw::ViewpointOptions> view;  ///< of a picture of the beginning
+  std::vector<std::string> values;                  ///< as --log-values takes them
+  std::optional<double> rate_hz;                    ///< of the samples; unset: each tick
+  std::optional<double> duration_s;                 ///< unset: as the scenario says
+  std::optional<draw::ViewpointOptions> view;       ///< of a picture of the beginning
+  std::function<Status(const Simulation&)> at_end;  ///< reads the world after the last tick
 };
 struct LoggedRun {
   draw::Table values;  ///< "time", then the values

@@ -62,5 +62,15 @@ TEST(ReportPage, IsOneFileWithEverythingInIt) {
   EXPECT_THAT(html, Not(HasSubstr("src=")));
 }
 
+TEST(ReportPage, SetsWhatStandsBetweenBackticksAsCode) {
+  ReportPage page("A `b`", "by `sandlot <x>`");
+  page.paragraph("an odd ` stays");
+  page.table({"x"}, {{"`a` and `b`"}});
+  const std::string html = page.html();
+  EXPECT_THAT(html, HasSubstr("<p>by <code>sandlot &lt;x&gt;</code></p>"));
+  EXPECT_THAT(html, HasSubstr("<p>an odd ` stays</p>"));
+  EXPECT_THAT(html, HasSubstr("<td><code>a</code> and <code>b</code></td>"));
+}
+
 }  // namespace
 }  // namespace sandlot::app

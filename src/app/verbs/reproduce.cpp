@@ -152,14 +152,18 @@ class Runner {
         std::fprintf(stderr, "\r\033[Krunning %s, %d s", condition.name.c_str(), shown = second);
       return !interrupted();
     };
+    Status read;
     callbacks.on_end = [&](Summary&) {
-      if (session) out.graph = topic_graph(session->simulation());
+      if (!session) return;
+      out.graph = topic_graph(session->simulation());
+      if (wanted.at_end) read = wanted.at_end(session->simulation());
     };
     const auto summary = sandlot::run(spec, callbacks);
     if (shows) std::fputs("\r\033[K", stderr);
     if (!summary) return summary.error();
     if (interrupted()) return Error{"interrupted"};
     if (!summary->errors.empty()) return Error{condition.name + ": " + summary->errors.front()};
+    SL_TRY(read);
     SL_ASSIGN(out.csv, read_text_file(values.path, std::uint64_t{1} << 28));
     SL_ASSIGN(out.values, draw::read_csv(out.csv, condition.name + ".csv"));
     fmt::print("{:<40} {:g} s\n", condition.scenario + ": " + condition.name, summary->sim_s);
