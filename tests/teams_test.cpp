@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <regex>
+#include <sstream>
 
 #include "command.h"
 
@@ -198,13 +200,46 @@ TEST(Output, StepTimesAreWrittenAndChangeNothing) {
   EXPECT_EQ(sandlot(run + " --repeat 2 --step-times " + scratch.file("t.csv")).exit_code, 2);
 }
 
+TEST(LongReproduce, MslQuickShowsModelsAndWhatVisionFinds) {
+  const TestFolder scratch;
+  const Printed made = sandlot("reproduce msl --quick --out " + scratch.file("out"));
+  ASSERT_EQ(made.exit_code, 0) << made.out;
+  const std::string html = read_file(scratch.file("out/index.html"));
+  for (const char* const text :
+       {"Figure 1", "Figure 2 (a)", "Figure 2 (b)", "Figure 3", "Figure 4", "Figure 5", "--quick leaves out",
+        ">inside<", "25 control steps a second", "20 scans a second", "Said in the paper, not shown here"})
+    EXPECT_THAT(html, HasSubstr(text));
+  EXPECT_THAT(html, Not(HasSubstr(">outside<")));
+  EXPECT_FALSE(fs::exists(scratch.file("out/levels.csv")));
+  // The ball lies 4.6 m ahead and 0.6 m to the right of the looking robot, which has hardly moved: hypot(4.6, 0.6) = 4.64 m. Both of its
+  // cameras see it; a pixel of the omni-camera is some tenths of a metre there.
+  std::istringstream csv(read_file(scratch.file("out/vision.csv")));
+  std::string line;
+  int balls = 0;
+  while (std::getline(csv, line)) {
+    if (line.find(",ball,ball,") == std::string::npos) continue;
+    ++balls;
+    double bearing = 0, true_bearing = 0, range = 0, true_range = 0;
+    ASSERT_EQ(std::sscanf(line.substr(line.find(",ball,ball,") + 11).c_str(), "%lf,%lf,%lf,%lf", &bearing,
+                          &true_bearing, &range, &true_range),
+              4)
+        << line;
+    EXPECT_NEAR(true_range, 4.64, 0.1);
+    EXPECT_NEAR(range, true_range, 0.15 * true_range) << line;
+    EXPECT_NEAR(bearing, true_bearing, 2) << line;
+  }
+  EXPECT_EQ(balls, 2);
+  EXPECT_THAT(read_file(scratch.file("out/ramp.csv")), HasSubstr("gains_p/left_motor.target"));
+}
+
 TEST(LongReproduce, CooperationIsOnePageWithoutANetwork) {
   const TestFolder scratch;
   const Printed made = sandlot("reproduce cooperation --repeat 2 --out " + scratch.file("out"));
   ASSERT_EQ(made.exit_code, 0) << made.out;
   const std::string html = read_file(scratch.file("out/index.html"));
   for (const char* const text :
-       {"rigid, disturber, no radio", "lead / hide", "bids by radio", "the paper", "<svg"})
+       {"rigid, disturber, no radio", "lead / hide", "bids by radio", "the paper", "<svg",
+        "energy drawn by pusher1 [J]", "Figures of the paper that are not shown"})
     EXPECT_THAT(html, HasSubstr(text));
   for (const char* const text : {"src=\"http", "href=\"http", "<script", "<link", "drawing.svg"})
     EXPECT_THAT(html, Not(HasSubstr(text)));

@@ -1,5 +1,6 @@
-/// msl: "A simulation environment for middle-size robots with multi-level abstraction". Its section 5.1: how erratic the speed of a
-/// simulation is (Fig. 4), how far interval timers miss that are set by an estimate of the speed; and the speed of each level.
+/// msl: "A simulation environment for middle-size robots with multi-level abstraction". Models, cameras and the ramp of a speed
+/// (Figs. 1 to 3); section 5.1: how erratic the speed of a simulation is (Fig. 4), how far interval timers miss that are set by an
+/// estimate of the speed; and the speed of each level (Fig. 5).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <iterator>
 
 #include "app/papers/msl_levels.h"
+#include "app/papers/msl_models.h"
 #include "app/papers/papers.h"
 #include "app/papers/step_timers.h"
 #include "draw/plot.h"
@@ -176,7 +178,9 @@ std::vector<std::string> character(const Trace& trace) {
 }  // namespace
 
 Status make_msl(const ReproduceContext& context, ReportPage& page) {
+  if (context.traces.empty()) SL_TRY(add_models(context, page));
   SL_ASSIGN(const std::vector<Trace> traces, take_traces(context));
+  page.heading("Figure 4: the speed of the simulation and its smoothings");
   page.paragraph(context.traces.empty() ? "Step times of real runs of scenarios that come with Sandlot, made "
                                           "for this page. They are wall times: they differ from "
                                           "machine to machine and from run to run, and so does every number "
@@ -189,7 +193,6 @@ Status make_msl(const ReproduceContext& context, ReportPage& page) {
               "mean deviation of the wall time", "speed"},
              rows);
 
-  page.heading("Figure 4: the speed of the simulation and its smoothings");
   for (const Trace& trace : traces) {
     SL_ASSIGN(const std::string figure, figure_4(trace));
     SL_TRY(context.write("speed_" + trace.name + ".svg", figure));
@@ -257,7 +260,33 @@ Status make_msl(const ReproduceContext& context, ReportPage& page) {
                     "plans again at each step "
                     "misses by less than a step, whatever its length.",
                     100 * planned.errors.front(), 100 * planned.errors.back())}});
-  if (context.traces.empty()) SL_TRY(add_level_table(context, page));
+  if (context.traces.empty()) {
+    page.heading("Figure 5: levels of abstraction, and the speed of one match at each");
+    page.paragraph(
+        "Figure 5 (a) shows a camera whose higher level gives found objects instead of pictures and takes "
+        "commands such as \"search\" and \"look at\": here the levels image, objects and world of a camera, "
+        "and of "
+        "a pan-tilt head the levels joints and view. (b) a laser whose higher level gives the pose that "
+        "localisation "
+        "would find: here ranges, segments and pose. Each device has a level of its own and can change it "
+        "during a "
+        "run (docs/sensor_levels.md).");
+    if (context.quick)
+      page.paragraph("--quick leaves out twelve games, whose speeds tell what each level costs.");
+    else SL_TRY(add_level_table(context, page));
+  }
+  page.heading("Said in the paper, not shown here");
+  page.table(
+      {"the paper", "why not"},
+      {{"One connection of each module to the server slowed it down noticeably; one for all did not (section "
+        "5).",
+        "No numbers there; ours are of another protocol: docs/clients.md."},
+       {"The system runs on several machines, server and clients.",
+        "One machine was at hand; programs run as processes of their own (docs/clients.md)."},
+       {"Localisation and collision avoidance on the simulated scanner showed a good approximation of "
+        "reality "
+        "(section 4).",
+        "It takes their robot and their software."}});
   return {};
 }
 

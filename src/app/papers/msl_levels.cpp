@@ -76,7 +76,6 @@ Status add_level_table(const ReproduceContext& context, ReportPage& page) {
     csv += fmt::format("\"{}\",,\"{}\",,{:.5g}\n", each.cyan, each.magenta, speed);
   }
   SL_TRY(context.write("levels.csv", csv));
-  page.heading("Levels of abstraction: the speed of one match");
   page.paragraph(
       fmt::format("Simulated time over the time that its ticks take, on one core, of the same match of ten "
                   "robots with all their sensors and the same "

@@ -30,7 +30,8 @@ constexpr Paper all[] = {
      .conditions = 0,
      .intervals = "",
      .make = make_msl,
-     .traces = true},
+     .traces = true,
+     .quick = true},
 };
 
 }  // namespace
