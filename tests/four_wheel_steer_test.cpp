@@ -87,10 +87,26 @@ nlohmann::json row_of(const nlohmann::json& results, const std::string& part, co
 /// What the page of a quick and of a whole run have in common.
 void expect_page_of_the_paper(const TestFolder& scratch) {
   const std::string html = scratch.read("out/index.html");
-  for (const char* const text :
-       {"Figure 9", "Table 1", "Figure 12 (a)", "Figure 12 (b)", "Figure 12 (c)", "Figure 13",
-        "Figure 14 (a)", "Figure 14 (b)", "Figure 14 (c)", "Figure 15 (b)", "Figure 16", "the paper: 190 ms",
-        "Where we differ", "time [s]", "steering angle [rad]", "data:image/png;base64", "with latency"})
+  for (const char* const text : {"Figure 5",
+                                 "Figure 7",
+                                 "Figures of the paper that are not shown",
+                                 "Figure 9",
+                                 "Table 1",
+                                 "Figure 12 (a)",
+                                 "Figure 12 (b)",
+                                 "Figure 12 (c)",
+                                 "Figure 13",
+                                 "Figure 14 (a)",
+                                 "Figure 14 (b)",
+                                 "Figure 14 (c)",
+                                 "Figure 15 (b)",
+                                 "Figure 16",
+                                 "the paper: 190 ms",
+                                 "Where we differ",
+                                 "time [s]",
+                                 "steering angle [rad]",
+                                 "data:image/png;base64",
+                                 "with latency"})
     EXPECT_THAT(html, HasSubstr(text));
   for (const char* const text :
        {"src=\"http", "href=\"http", "<script", "<link", ">nan", ">inf", "beyond", "does not hold"})
@@ -109,6 +125,8 @@ void expect_page_of_the_paper(const TestFolder& scratch) {
   const auto lag = row_of(results, "Section 4.1", "lag of servo1, real robot behind simulation");
   EXPECT_EQ(lag["paper"], 190);
   EXPECT_NEAR(lag["ours"].get<double>(), 190, 10);
+  EXPECT_EQ(row_of(results, "Figure 5", "joints that move")["ours"], 8);
+  EXPECT_EQ(row_of(results, "Figure 5", "links that they join")["ours"], 9);
   // The loop of 61 rad/s rises within some 50 ms and hardly overshoots.
   EXPECT_LT(row_of(results, "Figure 9", "rise time")["ours"].get<double>(), 100);
   EXPECT_LT(row_of(results, "Figure 9", "overshoot")["ours"].get<double>(), 10);
@@ -154,7 +172,7 @@ TEST(MarioPaper, WrongOptionsAndFoldersLeaveNothing) {
   refused("mario --slow" + out, "--slow");
   refused("mario --repeat 3" + out, "--repeat: mario repeats no runs; leave it out");
   refused("mario --traces tests/clock/pile.csv" + out, "--traces: mario takes no step times; leave it out");
-  refused("msl --quick" + out, "--quick: msl has no parts to leave out; leave it out");
+  refused("eyesim --quick" + out, "--quick: eyesim has no parts to leave out; leave it out");
   EXPECT_FALSE(fs::exists(scratch.file("out")));
   // A file, a device, and a folder that is there but takes no files.
   scratch.write("file", "text");

@@ -70,10 +70,22 @@ Status make_mario(const ReproduceContext& context, ReportPage& page) {
       "numbers beside ours. All are the same in each run. Nobody drove a robot for this page: \"with "
       "latency\" is our "
       "model of the real one.");
+  SL_TRY(mario::model_and_eyes(report));
   SL_TRY(mario::step_of_a_joint(report));
   SL_TRY(mario::drive(report));
   SL_TRY(mario::loop(report));
   add_summary(report);
+  page.heading("Figures of the paper that are not shown");
+  page.table(
+      {"figure", "why not"},
+      {{"1, 6, 8, 10, 11: general structure, a joint, low-level control, notation, overview",
+        "Drawings that explain, without results. docs/four_wheel_steer.md has the equations (the sign of "
+        "W_ix "
+        "in the paper's equation 5 is a misprint); Figure 16 shows the same parts as 8 and 11, running."},
+       {"3 and 4: photograph, CAD model, one wheel module",
+        "The robot was not at hand; Figure 5 has the chain of all four modules, Figure 15 (b) the model."},
+       {"12 to 14, the real robot's curves and its recording",
+        "Not published; \"with latency\" stands for them."}});
   report.files.emplace_back("results.json", results_json(report));
   add_data_files(report);
   for (const auto& [name, text] : report.files) SL_TRY(context.write(name, text));

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "app/papers/papers.h"
+#include "draw/graph.h"
+#include "model/model.h"
 #include "statistics/signals.h"
 
 namespace sandlot::app::mario {
@@ -72,6 +74,18 @@ struct Report {
 /// Colours of what returns in several figures.
 inline constexpr const char *commanded = "black", *simulated = "blue", *real = "vermilion";
 
+/// A joint and its links, from the model that was read.
+struct ChainLink {
+  std::string joint, type, parent, child;
+  Pose X_PC;  ///< of the child link in its parent, all joints at 0
+  bool moves = false;
+};
+/// Joints in the file's order; those to the world are left out.
+std::vector<ChainLink> chain_of(const model::Model& model);
+draw::Graph drawing_of(const std::vector<ChainLink>& chain);
+
+/// Figs. 2, 5 and 7: the model, the world's parameters, pictures of the pair of eyes.
+Status model_and_eyes(Report& report);
 /// Fig. 9: the step of a steering joint.
 Status step_of_a_joint(Report& report);
 /// Table 1, Figs. 12 to 14: the joystick's course.
