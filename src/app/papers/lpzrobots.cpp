@@ -2,7 +2,7 @@
 /// (chapter 4), guided (chapter 5), remembered and put to a task (chapter 6), against sines and random babbling.
 #include <fmt/format.h>
 
-#include "app/papers/papers.h"
+#include "app/papers/lpzrobots.h"
 #include "draw/interval_plot.h"
 
 namespace sandlot::app {
@@ -246,11 +246,24 @@ Status make_lpzrobots(const ReproduceContext& context, ReportPage& page) {
                   "20; those of the sine and of babbling were not searched. The runs here have seeds from {} "
                   "on, which no choice was made by.",
                   first_seed));
+  SL_TRY(lpzrobots::substances(context, page));
   SL_TRY(modes(context, page));
   SL_TRY(locomotion(context, page));
   SL_TRY(world_model(context, page));
   SL_TRY(guidance(context, page));
-  return memory(context, page);
+  SL_TRY(memory(context, page));
+  SL_TRY(lpzrobots::loop_of_numbers(context, page));
+  page.heading("Figures and tables of the thesis that are not shown");
+  page.table({"there", "why not"},
+             {{"Chapters 3 to 6",
+               "Only the list of results and chapter 2 were at hand: what is above is measured against the "
+               "sentences of "
+               "that list, without its curves and numbers."},
+              {"Figures 2.1 to 2.3: an agent's parts, the windows and the console, plots of channels",
+               "They show software. Ours: docs/selforg.md, docs/selforg_watch.md, docs/console.md."},
+              {"Table 2.2: the matrix library", "The same notation is in docs/selforg.md, section 6."},
+              {"Real robots", "None was at hand."}});
+  return {};
 }
 
 }  // namespace sandlot::app
