@@ -30,7 +30,16 @@ Status make_eyesim(const ReproduceContext& context, ReportPage& page) {
   SL_TRY(eyesim::radio_errors(report));
   SL_TRY(eyesim::time_model(report));
   SL_TRY(eyesim::tasks(report));
-  return eyesim::speed(report);
+  SL_TRY(eyesim::speed(report));
+  page.heading("Figures of the paper that are not shown");
+  page.table({"figure", "why not"},
+             {{"1, the real robot", "None was at hand."},
+              {"3: the user interface, and the screen with its buttons",
+               "The page of a run (--port 8765) has them: docs/page.md, docs/panels.md."},
+              {"4: beams, camera frustum and radio messages in the 3D view",
+               "The drawing in section 4 above has beams; the page of a run has all of them."},
+              {"6: the drawing of the channel", "Its probabilities are measured in section 5.1."}});
+  return {};
 }
 
 namespace eyesim {

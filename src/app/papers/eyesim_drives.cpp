@@ -2,10 +2,12 @@
 /// high-level driving interface.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "app/papers/eyesim.h"
+#include "app/papers/pictures.h"
 #include "base/math.h"
 
 namespace sandlot::app::eyesim {
@@ -20,6 +22,11 @@ std::string fixed(double x, int digits = 2) {
   std::string out = fmt::format("{:.{}f}", x, digits);
   if (out.find_first_not_of("-0.") == std::string::npos && out.front() == '-') out.erase(0, 1);
   return out;
+}
+
+/// Of a robot that stands at the origin, for Figures 1 and 2.
+draw::ViewpointOptions portrait() {
+  return {.from = Vec3{0.36, 0.36, 0.26}, .at = Vec3{0, 0, 0.05}, .width = 320, .height = 240};
 }
 
 /// One line `motion NAME BEGIN END PERCENT... TICKS...` of a program, and the true motion meanwhile.
@@ -67,11 +74,13 @@ std::string csv_row(const char* drive, const std::string& name, const Twist& pre
 
 constexpr double bare_c = pi * 0.054 / 1100, bare_d = 0.12;  ///< of bare.robi
 
-Status differential(const Report& report, std::string& csv) {
-  SL_ASSIGN(const ProgramRun run, report.runs.run({.file = "eyesim_paper/wheels.sim",
-                                                   .duration_s = 30,
-                                                   .stop_when = "Bare/controller.ended > 0",
-                                                   .values = pose_values("Bare")}));
+Status differential(const Report& report, std::string& csv, assets::Picture& picture) {
+  SL_ASSIGN(ProgramRun run, report.runs.run({.file = "eyesim_paper/wheels.sim",
+                                             .duration_s = 30,
+                                             .stop_when = "Bare/controller.ended > 0",
+                                             .values = pose_values("Bare"),
+                                             .view = portrait()}));
+  picture = std::move(run.picture);
   SL_ASSIGN(const std::vector<Motion> motions, motions_of(run, "Bare", 2));
   if (motions.size() < 5) return missing_line("wheels.sim", "motion");
   report.page.paragraph(fmt::format(
@@ -126,11 +135,13 @@ Status differential(const Report& report, std::string& csv) {
 /// Omni: wheels of 80 mm, 1400 deg/s, 1000 ticks a turn, 240 mm apart both ways.
 constexpr double omni_c = pi * 0.08 / 1000, omni_d = 0.24, omni_full_ticks = 1400.0 / 360 * 1000;
 
-Status mecanum(const Report& report, std::string& csv) {
-  SL_ASSIGN(const ProgramRun run, report.runs.run({.file = "eyesim_paper/mecanum.sim",
-                                                   .duration_s = 40,
-                                                   .stop_when = "Omni/controller.ended > 0",
-                                                   .values = pose_values("Omni")}));
+Status mecanum(const Report& report, std::string& csv, assets::Picture& picture) {
+  SL_ASSIGN(ProgramRun run, report.runs.run({.file = "eyesim_paper/mecanum.sim",
+                                             .duration_s = 40,
+                                             .stop_when = "Omni/controller.ended > 0",
+                                             .values = pose_values("Omni"),
+                                             .view = portrait()}));
+  picture = std::move(run.picture);
   SL_ASSIGN(const std::vector<Motion> motions, motions_of(run, "Omni", 4));
   if (motions.size() < 8) return missing_line("mecanum.sim", "motion");
   report.page.paragraph(fmt::format(
@@ -205,14 +216,16 @@ Status mecanum(const Report& report, std::string& csv) {
 
 constexpr double car_wheelbase_m = 0.2;
 
-Status ackermann(const Report& report, std::string& csv) {
+Status ackermann(const Report& report, std::string& csv, assets::Picture& picture) {
   std::vector<std::string> values = pose_values("Ackermann");
   values.emplace_back("Ackermann.joints.front_left_steering.position");
   values.emplace_back("Ackermann.joints.front_right_steering.position");
-  SL_ASSIGN(const ProgramRun run, report.runs.run({.file = "eyesim_paper/car.sim",
-                                                   .duration_s = 40,
-                                                   .stop_when = "Ackermann/controller.ended > 0",
-                                                   .values = values}));
+  SL_ASSIGN(ProgramRun run, report.runs.run({.file = "eyesim_paper/car.sim",
+                                             .duration_s = 40,
+                                             .stop_when = "Ackermann/controller.ended > 0",
+                                             .values = values,
+                                             .view = portrait()}));
+  picture = std::move(run.picture);
   SL_ASSIGN(const std::vector<Motion> motions, motions_of(run, "Ackermann", 0));
   if (motions.size() < 5) return missing_line("car.sim", "motion");
   report.page.paragraph(
@@ -288,12 +301,19 @@ Status ways(const Report& report) {
 
 Status drives(const Report& report) {
   report.page.heading("Section 2: drive kinematics");
+  std::array<assets::Picture, 3> pictures;
   std::string csv =
       "drive,motion,v_x predicted [m/s],v_y predicted,turning rate predicted [rad/s],v_x measured,v_y "
       "measured,turning rate measured\n";
-  SL_TRY(differential(report, csv));
-  SL_TRY(mecanum(report, csv));
-  SL_TRY(ackermann(report, csv));
+  SL_TRY(differential(report, csv, pictures[0]));
+  SL_TRY(mecanum(report, csv, pictures[1]));
+  SL_TRY(ackermann(report, csv, pictures[2]));
+  report.page.figure(
+      picture_svg({tile_of(pictures[0], "differential"), tile_of(pictures[2], "Ackermann"),
+                   tile_of(pictures[1], "omni-directional, Mecanum")},
+                  3),
+      "Figure 2 of the paper, and the simulated half of its Figure 1: the robots that these "
+      "numbers are of, as their .robi files describe them. Rollers of Mecanum wheels are not drawn.");
   SL_TRY(ways(report));
   return report.context.write("drives.csv", csv);
 }

@@ -8,6 +8,7 @@
 
 #include "app/papers/eyesim.h"
 #include "base/math.h"
+#include "draw/interval_plot.h"
 
 namespace sandlot::app::eyesim {
 
@@ -85,6 +86,7 @@ Status radio_errors(const Report& report) {
       "the probability (1 - P_p) (1 - P_b)^256.",
       report.context.repeat));
   std::vector<Check> checks;
+  std::vector<draw::IntervalRow> plot;
   for (const Channel& channel : channels) {
     const ProgramRunSpec spec{.file = "eyesim_paper/radio.sim",
                               .duration_s = 8,
@@ -108,8 +110,18 @@ Status radio_errors(const Report& report) {
     checks.push_back(rate_check(name + "unharmed messages",
                                 (1 - channel.packets) * math::pow(1 - channel.bits, bits_of_message),
                                 unharmed, sent));
+    const Check& last = checks.back();
+    plot.push_back({name + "formula", last.predicted, {}, {}, 6});
+    plot.push_back({"measured", last.measured, last.low, last.high, 0});
   }
   check_table(report.page, checks);
+  report.page.figure(
+      draw::draw_intervals(plot, {.title = "Messages of 256 bits that arrive unharmed",
+                                  .x_label = "%",
+                                  .range = {{0, 100}},
+                                  .mark = {}}),
+      "The channel of Figure 6 at work. Black: (1 - P_p) (1 - P_b)^256; blue: measured, with Wilson's 99.9 % "
+      "intervals.");
   report.page.table(
       {"the paper", "here"},
       {{"A binary symmetric channel with a bit error rate P_b; a whole package is dropped with the "
