@@ -198,7 +198,11 @@ Status energy_and_time(const ReproduceContext& context, ReportPage& page) {
             draw::draw_plot(tables, {.x_label = "time [s]",
                                      .y_label = "energy drawn by pusher1 [J]",
                                      .labels = {"camera", "propulsion", "radio, emitter and receiver"}}));
-  page.figure(figure, "Energy that each device of a pusher has drawn from its battery, with radio.");
+  page.figure(figure,
+              "Energy that each device of a pusher has drawn from its battery, with radio. A use of the "
+              "radio is counted "
+              "with each of its samples, sent or not: in this the paper's emitter, which consumes when it "
+              "sends, differs.");
   const auto joules = [](double x) { return fmt::format("{:.1f} J", x); };
   const Run &with = ends[0], &without = ends[1];
   page.table(
@@ -209,9 +213,10 @@ Status energy_and_time(const ReproduceContext& context, ReportPage& page) {
         fmt::format("{:g} W all the time, from the run's length", receiver_w)},
        {"emitter", joules(with.radio - receiver_w * with.end_s),
         joules(without.radio - receiver_w * without.end_s),
-        fmt::format("the radio's rest: {:.0f} and {:.0f} messages of {:g} mJ",
-                    (with.radio - receiver_w * with.end_s) / emitter_j,
-                    (without.radio - receiver_w * without.end_s) / emitter_j, 1000 * emitter_j)},
+        fmt::format(
+            "the radio's rest: {:.0f} and {:.0f} times {:g} mJ, 20 a second also where nothing is sent",
+            (with.radio - receiver_w * with.end_s) / emitter_j,
+            (without.radio - receiver_w * without.end_s) / emitter_j, 1000 * emitter_j)},
        {"propulsion", joules(with.drive), joules(without.drive),
         fmt::format("{:.1f} and {:.1f} J by {:g} mJ for each of 20 commands a second; the rest is work",
                     20 * drive_j * with.end_s, 20 * drive_j * without.end_s, 1000 * drive_j)}});
