@@ -50,7 +50,7 @@ constexpr Golden goldens[] = {
     {"scenarios/predator_prey.yaml", "bdd26c3b26c42ab9"},
     {"scenarios/transport.yaml --duration 20s", "ec208b623a04833c"},
     {"scenarios/foraging.yaml --duration 20s", "bd2df449de057e61"},
-    {"scenarios/football.yaml --duration 20s", "2a056ffff8b8a2c3"},
+    {"scenarios/football.yaml --duration 20s", "754333b19408fc7d"},
     {"scenarios/charging.yaml --duration 60s", "d15b3814c935654e"},
     {"scenarios/office_localise.yaml --duration 30s", "162ccb418accda5e"},
     {"scenarios/office_goals.yaml --duration 30s", "3a064743e084bf21"},

@@ -32,8 +32,10 @@ struct alignas(64) RigidGroup {
   std::uint32_t slot = none;                ///< of its instance; none: there is no such group
   std::uint32_t index = 0;                  ///< in the instance's plan
   std::uint32_t silhouette = none;          ///< none: a circle
-  double reach_m = 0;                       ///< how far it may come in this step
-  Vec2 force_N;                             ///< of wrenches, consumed by the next step
+  bool rolls =
+      false;  ///< a ball on the ground: what pushes it turns it, too, so that inverse_kg is that of m + I / r^2
+  double reach_m = 0;  ///< how far it may come in this step
+  Vec2 force_N;        ///< of wrenches, consumed by the next step
   double torque_Nm = 0;
 
   Vec2 velocity_at(Vec2 arm) const { return v + w_radps * left_of(arm); }
@@ -136,6 +138,8 @@ struct ContactPoint {
   Turn heading_a, heading_b;  ///< when it was found
   double gap_m = 0;
   double normal_kg = 0, tangent_kg = 0;
+  /// Impulse of a blow, by that of bodies which take up spin while they touch: a ball that is hit slides first.
+  double blow = 1;
   double bias_mps = 0;  ///< the least velocity along the normal
   double normal_Ns = 0, tangent_Ns = 0, bounce_Ns = 0, bounce_tangent_Ns = 0;
   double mu = 0, restitution = 0, threshold_mps = 0, belt_mps = 0;

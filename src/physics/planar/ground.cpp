@@ -91,10 +91,9 @@ void PlanarEngine::find_ground(std::uint32_t k) {
     const double weight_N = s.weight_kg * gravity_mps2_;
     const Vec2 belt{pair.belt_velocity_W_mps.x, pair.belt_velocity_W_mps.y};
     if (plan.rolls) {
-      // The torque of rolling resistance slows the ball's way and its spin: rho N / r = (m + I / r^2) a. A ball's I
-      // is the same about all axes, so that about the vertical will do.
-      const double r = s.ball_radius_m, spinning = plan.inertia_kgm2 / (plan.mass_kg * r * r);
-      friction.force_N = friction.side_N = pair.rolling_resistance_m * weight_N / (r * (1 + spinning));
+      // The torque of rolling resistance slows the ball's way and its spin: rho N / r = (m + I / r^2) a.
+      const double inertia = group.rolls ? 1 : 1 + plan.spin();
+      friction.force_N = friction.side_N = pair.rolling_resistance_m * weight_N / (s.ball_radius_m * inertia);
       friction.belt_mps = belt;
       return;
     }

@@ -115,7 +115,8 @@ void PlanarEngine::shape(std::uint32_t slot) {
     group.slot = slot;
     group.index = i;
     group.silhouette = none;
-    group.inverse_kg = instance.guided ? 0 : 1 / p.mass_kg;
+    group.rolls = p.rolls && p.supports[0].surface->mu > 0 && !instance.guided;
+    group.inverse_kg = instance.guided ? 0 : 1 / (p.mass_kg * (group.rolls ? 1 + p.spin() : 1));
     group.inverse_kgm2 = instance.guided ? 0 : 1 / p.inertia_kgm2;
     instance.groups.push_back(k);
     Disc& disc = map_.discs()[k];

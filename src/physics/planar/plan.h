@@ -67,6 +67,11 @@ struct RigidGroupPlan {
   std::uint32_t root = 0;         ///< its link nearest to the canonical one
   std::vector<Support> supports;  ///< other than wheels
   bool rolls = false;             ///< stands on one ball and nothing else
+  /// I / (m r^2) of a group that rolls. A ball's I is the same about all axes, so that about the vertical will do.
+  double spin() const {
+    const double r = supports[0].ball_radius_m;
+    return inertia_kgm2 / (mass_kg * r * r);
+  }
 };
 
 struct WheelPlan {

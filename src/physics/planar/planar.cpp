@@ -256,6 +256,9 @@ void PlanarEngine::apply(std::span<const Wrench> wrenches) {
       const Vec2 arm = rotate(group.heading, Vec2{at.x, at.y} - instance.plan->groups[group.index].com_H);
       const Vec2 force{w.force_N.x, w.force_N.y};
       group.force_N = group.force_N + force;
+      if (group.rolls)  // a torque that rolls it pushes like a force at its middle
+        group.force_N = group.force_N +
+                        (1 / group.plan->supports[0].ball_radius_m) * Vec2{w.torque_Nm.y, -w.torque_Nm.x};
       group.torque_Nm += w.torque_Nm.z + cross(arm, force);
     }
   }

@@ -20,6 +20,10 @@
 ///          impact; the rest of the step is lost after 24 of them.
 /// Ground   what does not stand on wheels rubs with mu times its weight, as force and torque, by an
 ///          ellipsoidal limit surface; one sphere rolls, held by rolling resistance alone (ground.cpp).
+/// Balls    A ball that is kicked or bounces slides first and rolls in the end; here it rolls at once, with the velocity of
+///          that end: a lasting push moves m + I / r^2, and a blow, which is over before the ball turns, is as
+///          large as against m alone, so that a bounce keeps (1 + e) / (1 + I / (m r^2)) - 1 of the speed, or nothing. A sphere
+///          with mu 0 slides for ever. A torque about the horizontal rolls it.
 ///          Without a floor: a surface with mu 1.
 /// Wheels   level `contact`: spin about the axle with motor, damping and friction; against the ground along
 ///          and across within Coulomb's cone of the weight on the wheel; with rollers along the roller's axis
@@ -30,8 +34,7 @@
 /// Joints   pivots and sliders between groups of an instance, with motor, limits, friction and spring;
 ///          steering. All others are kinematic: a velocity target is reached at once and ends at the joint's
 ///          limits.
-/// Limits   a ball that is hit rolls at once, and its mass alone is pushed. Wheels do not tilt the body, nor
-///          does accelerating shift weight.
+/// Limits   balls have no phase of sliding. Wheels do not tilt the body, nor does accelerating shift weight.
 ///          Steering does not feel the ground. Kinematic joints do not change outlines. A lying cylinder
 ///          slides.
 /// Threads  islands of touching bodies are solved in parallel; results do not depend on how many threads

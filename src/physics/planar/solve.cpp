@@ -32,6 +32,14 @@ double effective_kg(const RigidGroup* a, const RigidGroup* b, Vec2 arm_a, Vec2 a
   return k > 0 ? 1 / k : 0;
 }
 
+/// Share of the impulse that stops two bodies, if balls take up spin while they touch, which stops them if they slide.
+double blow_of(const RigidGroup* a, const RigidGroup* b, double normal_kg) {
+  double more = 0;
+  for (const RigidGroup* each : {a, b})
+    if (each && each->rolls) more += 1 / each->plan->mass_kg - each->inverse_kg;
+  return more > 0 ? 1 / (1 + more * normal_kg) : 1;
+}
+
 /// A contact point with the bodies it is about.
 struct Ends {
   RigidGroup *a, *b;
@@ -67,6 +75,7 @@ void PlanarEngine::prepare(ContactPoint& t, double h_s, bool warm) {
   if (b) t.arm_b = t.arm_b - b->p, t.heading_b = b->heading;
   t.normal_kg = effective_kg(a, b, t.arm_a, t.arm_b, t.normal);
   t.tangent_kg = effective_kg(a, b, t.arm_a, t.arm_b, left_of(t.normal));
+  t.blow = blow_of(a, b, t.normal_kg);
   t.bias_mps = t.gap_m > 0 ? -t.gap_m / h_s : 0;
   if (!warm) t.normal_Ns = t.tangent_Ns = 0;
 }
@@ -85,7 +94,7 @@ void PlanarEngine::bounce(std::span<ContactPoint> contact_points) {
     t.bounce_tangent_Ns += j;
   };
   const auto single = [&](ContactPoint& t, double v) {
-    const double j = (1 + t.restitution) * v * t.normal_kg;
+    const double j = (1 + t.restitution) * v * t.normal_kg * t.blow;
     ends(groups_, t).push(t, j * t.normal);
     t.bounce_Ns += j;
     rub(t, j);

@@ -206,7 +206,7 @@ TEST(PlanarContact, ARobotPushesABallUpToAWall) {
   const InstanceId ball = w.add(model_of(Sphere{0.1}, false, 0.5), at(0.5, 0, 0, 0.1));
   w.drive(robot, 1, 0, 0);
   w.run(100);
-  EXPECT_GT(w.p(ball).x, 1.2);
+  EXPECT_GT(w.p(ball).x, 1.15);
   w.run(300);
   EXPECT_NEAR(w.p(ball).x, 1.9, 5e-4);
   EXPECT_NEAR(w.p(robot).x, 1.6, 1e-3);

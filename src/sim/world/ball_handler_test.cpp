@@ -119,8 +119,13 @@ TEST(BallHandler, LetsGoOnCommandAndAKickThenGivesTheImpulseOverTheMass) {
     EXPECT_FALSE(handler(*simulation).engaged);
     EXPECT_EQ(handler(*simulation).force, 0);
     EXPECT_EQ(handler(*simulation).losses, 0u) << "released";
-    // 2.15 Ns / 0.43 kg = 5 m/s; within the tick friction takes at most 0.6 g 0.01 s.
-    EXPECT_NEAR(value(*simulation, "ball.twist.linear.x") - before, 5 - 0.03, 0.031);
+    // 2.15 Ns / 0.43 kg = 5 m/s; within the tick friction takes at most 0.6 g 0.01 s. The planar engine knows no
+    // sliding: a hollow ball rolls at once, with what it rolls with in the end, 5 / (1 + 2 / 3).
+    if (engine == std::string("rigid")) {
+      EXPECT_NEAR(value(*simulation, "ball.twist.linear.x") - before, 5 - 0.03, 0.031);
+    } else {
+      EXPECT_NEAR(value(*simulation, "ball.twist.linear.x") - before, 3, 0.005);
+    }
   }
 }
 

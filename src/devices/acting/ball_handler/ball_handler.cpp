@@ -147,14 +147,12 @@ void BallHandler::pull(const Context& context, double h_s) {
   const Vec3 v = level(velocity_at(held, p));
   const double mass_kg = link.inertial.mass_kg, most_N = state.strength * spec.max_force_N;
   const Vec3 force_N = at_most((wanted - v) * (gain * mass_kg / h_s), most_N);
-  Vec3 torque_Nm;
-  if (!planar) {
-    const double radius_m = std::get<Sphere>(skin.shape).radius_m;
-    const auto roll = [&](Vec3 velocity) { return cross(Vec3{0, 0, 1}, velocity) / radius_m; };
-    const Vec3 missing = level(roll(v) - held.V_WB.angular);
-    torque_Nm = at_most(link.inertial.moments.x * (roll(force_N) / mass_kg + missing * (gain / h_s)),
-                        most_N * radius_m);
-  }
+  // Without height the ball's spin is unknown, and follows its way.
+  const double radius_m = std::get<Sphere>(skin.shape).radius_m;
+  const auto roll = [&](Vec3 velocity) { return cross(Vec3{0, 0, 1}, velocity) / radius_m; };
+  const Vec3 missing = planar ? Vec3{} : level(roll(v) - held.V_WB.angular);
+  const Vec3 torque_Nm = at_most(link.inertial.moments.x * (roll(force_N) / mass_kg + missing * (gain / h_s)),
+                                 most_N * radius_m);
   state.impulse_Ns += norm(force_N) * h_s;
   context.actuation.wrenches.push_back(
       {ball, force_N, torque_Nm + cross(p - centre_of_mass(engine, ball, held.X_WB), force_N)});

@@ -12,7 +12,8 @@
 ///            v* = velocity of the robot's body at p - (p - H) / 0.08 s
 ///            F  = m (v* - v) / (2 h), at most strength max_force; at the ball's middle
 ///            T  = I (z x F / (m r) + (w* - w) / (2 h)) about the horizontal, at most strength max_force r; w* = z x v / r: the
-///                 roll without slip, for which the ground needs no friction; not on an engine that is planar
+///                 roll without slip, for which the ground needs no friction; w is taken for w* on an engine that is
+///                 planar
 ///          The device's link takes -F, at the same point, and -T. Both halve the difference in each step, so that two robots
 ///          that pull at one ball do not make it swing.
 /// Tears    to accelerate the ball with the robot by a takes F = m (a + b), b: what rolling resistance takes. What is more than
