@@ -11,12 +11,14 @@ namespace {
 constexpr double keeps_aim_s = 0.4;
 /// The referee lets a robot keep the ball for 3 m from where it got it.
 constexpr double last_way_m = 2.5, brakes_mps2 = 2.6;
+/// A kicked ball slides, and rolls on with this share of its speed: 1 / (1 + I / (m r^2)) of a hollow ball.
+constexpr double rolls_on = 0.6;
+/// Mean share on its way to the goal, part of which it slides.
+constexpr double shot_share = 0.7;
 constexpr double body_m = 0.36;  ///< robot and ball side by side
 
-/// Speed with which a ball must be kicked to arrive after a way with 1.5 m/s: a kicked ball slides and loses two fifths until it rolls.
-double pass_speed(const Scene& scene, double way_m) {
-  return std::clamp(std::sqrt(2.25 + 2 * rolling_mps2 * way_m) / 0.6, scene.keys->pass_speed_mps, 8.0);
-}
+/// Speed of a clearance from a set piece.
+constexpr double piece_clearance_mps = 4.5;
 
 void aim(Memory& memory, Aim kind, Vec3 at, double tolerance_rad, double speed_mps, double until_s) {
   memory.aim = kind;
@@ -61,11 +63,19 @@ double after_turn(const Scene& scene, Vec3 direction, double nearest_m) {
   return std::max(0.05, 1 - pressed * angle / 3.0);
 }
 
-/// Chance of a pass.
+/// Chance of a pass: of its way, and that the receiver has it under control before an opponent comes.
 double pass_chance(const Scene& scene, Vec3 to) {
   const double way = norm(to - scene.ball);
-  const double room = room_beside(scene, scene.ball, to, 0.6 * pass_speed(scene, way), body_m, 1.2);
-  return std::clamp(0.45 + room, 0.0, 0.9) * (1 - 0.03 * way);
+  const double room = room_beside(scene, scene.ball, to, rolls_on * pass_speed(scene, way), body_m, 1.2);
+  const double alone = std::clamp(0.4 * nearest_opponent(scene, to), 0.2, 1.0);
+  return std::clamp(0.45 + room, 0.0, 0.9) * (1 - 0.03 * way) * alone;
+}
+
+/// Where a team-mate will be when the ball comes: on the way to its target, which it reaches and does not pass.
+Vec3 receives_at(const Mate& mate) {
+  const Vec3 lead = 0.4 * mate.velocity, left = flat(mate.target - mate.at);
+  const double way = norm(left), most = norm(lead);
+  return mate.at + (most > way ? way / most : 1.0) * lead;
 }
 
 struct Option {
@@ -79,7 +89,7 @@ const Mate* best_receiver(const Scene& scene, double least_gain_m, double& value
   value = 0;
   for (const Mate& mate : scene.mates) {
     if (mate.number == scene.keys->keeper) continue;
-    const Vec3 to = mate.at + 0.4 * mate.velocity;
+    const Vec3 to = receives_at(mate);
     const double way = norm(to - scene.ball), gain = to.x - scene.ball.x;
     if (way < 1.8 || way > 10 || gain < least_gain_m || !inside(scene, to, 0.3)) continue;
     const double each = pass_chance(scene, to) * worth(scene, to);
@@ -89,6 +99,29 @@ const Mate* best_receiver(const Scene& scene, double least_gain_m, double& value
 }
 
 }  // namespace
+
+double pass_speed(const Scene& scene, double way_m) {
+  const double rolls_mps = std::sqrt(catch_mps * catch_mps + 2 * rolling_mps2 * way_m);
+  return std::clamp(rolls_mps / rolls_on, scene.keys->pass_speed_mps, 8.0);
+}
+
+Vec3 free_place(const Scene& scene, Vec3 usual) {
+  const Vec3 ahead = normalised(Vec3{scene.goal_x(), 0, 0} - scene.ball);
+  Vec3 best = usual;
+  double most = -1;
+  const auto consider = [&](Vec3 at) {
+    if (!inside(scene, at, 0.8) || at.x > scene.goal_x() - scene.field.penalty_area_depth_m - 0.5) return;
+    const double value = pass_chance(scene, at) * worth(scene, at) - 0.002 * norm(at - scene.me);
+    if (value > most) most = value, best = at;
+  };
+  consider(usual);
+  for (const double way : {3.0, 4.5, 6.0})
+    for (const double turn : {-1.4, -0.7, 0.0, 0.7, 1.4}) {
+      const auto [s, c] = math::sincos(turn);
+      consider(scene.ball + way * turned(ahead, s, c));
+    }
+  return best;
+}
 
 double room_beside(const Scene& scene, Vec3 from, Vec3 to, double speed_mps, double reach_m,
                    double drive_mps2) {
@@ -115,8 +148,8 @@ Shot best_shot(const Scene& scene, Vec3 from) {
     const Vec3 way = flat(at - from);
     const double length = norm(way);
     if (length < 0.3 || way.x <= 0) continue;
-    const double room = room_beside(scene, from, at, 0.75 * scene.keys->shot_speed_mps, body_m,
-                                    scene.keys->acceleration_mps2);
+    const double room = room_beside(scene, from, at, shot_share * scene.keys->shot_speed_mps, body_m,
+                                    1.3 * scene.keys->acceleration_mps2);
     // Seen from aside the mouth is narrower.
     const double post = (half - std::abs(at.y) - ball_radius_m) * way.x / length;
     const double scatter = 0.05 + 0.035 * length;
@@ -156,7 +189,7 @@ void choose_aim(const Scene& scene, Memory& memory) {
   }
   double value = 0;
   if (const Mate* const mate = best_receiver(scene, -4, value); mate != nullptr) {
-    const Vec3 to = mate->at + 0.4 * mate->velocity;
+    const Vec3 to = receives_at(*mate);
     offer({Aim::pass, to, style.passes * value, 0.07, pass_speed(scene, norm(to - scene.ball))});
   }
   const Vec3 ahead = normalised(goal - scene.ball);
@@ -216,7 +249,7 @@ void aim_of_piece(const Scene& scene, Memory& memory) {
   }
   // A goal straight from it would not count.
   if (scene.keys->play == Play::run_and_kick)
-    return aim(memory, Aim::clearance, goal, 0.1, scene.keys->pass_speed_mps, until);
+    return aim(memory, Aim::clearance, goal, 0.1, piece_clearance_mps, until);
   for (const Mate& mate : scene.mates) {
     const double way = norm(mate.target - scene.ball);
     if (mate.role == Role::supporter && way > 1.8 && way < 6 && pass_chance(scene, mate.target) > 0.5)
@@ -225,8 +258,7 @@ void aim_of_piece(const Scene& scene, Memory& memory) {
   double value = 0;
   if (const Mate* const mate = best_receiver(scene, -6, value))
     return aim(memory, Aim::pass, mate->at, 0.08, pass_speed(scene, norm(mate->at - scene.ball)), until);
-  aim(memory, Aim::clearance, {scene.ball.x + 4, 0.5 * scene.ball.y, 0}, 0.1, scene.keys->pass_speed_mps,
-      until);
+  aim(memory, Aim::clearance, {scene.ball.x + 4, 0.5 * scene.ball.y, 0}, 0.1, piece_clearance_mps, until);
 }
 
 }  // namespace sandlot::controllers::soccer_player

@@ -6,7 +6,7 @@
 ///          ball is then:
 ///          shot      1 if it passes opponents and lies between the posts. An opponent reaches 0.36 m and what it drives until the ball
 ///                    is there; the ball scatters by 0.05 m and 3.5 % of the way;
-///          pass      to a team-mate on a line that no opponent reaches sooner;
+///          pass      to where a team-mate will be, on a line that no opponent reaches sooner, better where no opponent is near it;
 ///          carry     with the handler, in seven directions, as far as the rules let it;
 ///          push on   a soft kick ahead to where the player itself is sooner than anybody else;
 ///          clearance far ahead, away from opponents.
@@ -24,6 +24,13 @@ void choose_aim(const Scene& scene, Memory& memory);
 void aim_of_piece(const Scene& scene, Memory& memory);
 /// Aim of a goalkeeper with the ball: a free team-mate, else the side without opponents.
 void aim_of_keeper(const Scene& scene, Memory& memory);
+
+/// Place in front of the ball where the supporter can be reached by a pass, of 15 at 3 to 6 m from the ball the one where the
+/// ball would be worth most, less 0.002 per metre of its own way there; `usual` is a sixteenth.
+Vec3 free_place(const Scene& scene, Vec3 usual);
+
+/// Speed with which to kick a ball that shall arrive after a way at `catch_mps`.
+double pass_speed(const Scene& scene, double way_m);
 
 /// Point of the goal's mouth that a shot from `from` has the best chance at, and that chance, 0 to 1.
 struct Shot {

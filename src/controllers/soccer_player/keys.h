@@ -45,7 +45,7 @@ struct Keys {
   std::array<double, 3> start{0, 0, 0};
   bool placed = false;
   double speed_mps = 2.8, turn_speed_radps = 5, acceleration_mps2 = 2.2;
-  double shot_speed_mps = 11, pass_speed_mps = 4.5, shot_range_m = 10;
+  double shot_speed_mps = 11, pass_speed_mps = 3.2, shot_range_m = 10;
   double kick_reach_m = 0.42, kick_width_m = 0.11, front_m = 0.335;
   double radio_rate_hz = 10, report_rate_hz = 10;
   perception::FinderSpec vision = usual_vision();
@@ -112,18 +112,20 @@ struct Keys {
 struct Style {
   /// Factors on the worth of passes, of carrying the ball and of pushing it on.
   double passes, carries, pushes;
+  bool
+      offers;  ///< whether the supporter seeks a place that a pass reaches; else it has a fixed one beside the ball
   double line;   ///< depth of the defence: 0 at the goal, 1 at the ball
   int pressers;  ///< players that go for a ball of the opponents beside the attacker
   bool places;   ///< whether those without the ball take places
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {1.2, 1, 1, 0.45, 0, true};
-    case Play::dribbling: return {0.7, 1.2, 1.3, 0.45, 0, true};
-    case Play::pressing: return {1, 1, 1, 0.55, 1, true};
+    case Play::passing: return {1.3, 1, 1, true, 0.45, 0, true};
+    case Play::dribbling: return {0.7, 1.2, 1.3, false, 0.45, 0, true};
+    case Play::pressing: return {1, 1, 1, false, 0.55, 1, true};
     case Play::run_and_kick: break;
   }
-  return {0, 0, 0, 0.3, 0, false};
+  return {0, 0, 0, false, 0.3, 0, false};
 }
 
 }  // namespace sandlot::controllers::soccer_player

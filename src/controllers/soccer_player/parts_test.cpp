@@ -203,6 +203,43 @@ TEST(PlayerRoles, WhoStandsBehindTheBallGetsItSooner) {
   EXPECT_NEAR(behind, std::sqrt(2 * (1 - one.keys.front_m) / one.keys.acceleration_mps2), 1e-9);
 }
 
+TEST(PlayerRoles, TheTimeForAWayIsThatOfConstantAcceleration) {
+  Keys keys;
+  keys.speed_mps = 2, keys.acceleration_mps2 = 1;
+  EXPECT_NEAR(time_for(keys, 0.5, 0), 1, exact);    // s = t^2 / 2
+  EXPECT_NEAR(time_for(keys, 4, 0), 2 + 1, exact);  // 2 m up to 2 m/s, the rest at that
+  EXPECT_NEAR(time_for(keys, 1.5, 1), 1, exact);    // t + t^2 / 2
+  EXPECT_NEAR(time_for(keys, 1.5, -1), 3, exact);   // -t + t^2 / 2: it turns round first
+  EXPECT_NEAR(time_for(keys, 4, 2), 2, exact);
+  EXPECT_EQ(time_for(keys, -0.1, 1), 0) << "it is there";
+}
+
+TEST(PlayerRoles, ABallThatComesIsMetWhereThePlayerIsTwoTenthsEarly) {
+  OnField one;
+  one.scene.ball = {0, 0, 0};
+  one.scene.ball_velocity = {2, 0, 0};
+  one.scene.me = {3, 1, 0};
+  const Meeting meeting = meet(one.scene);
+  expect_place(meeting.at, 2 * meeting.after_s - 0.125 * meeting.after_s * meeting.after_s, 0);
+  const auto late = [&](double t) {
+    const Vec3 at{2 * t - 0.125 * t * t, 0, 0};
+    return time_for(one.keys, norm(at - one.scene.me) - one.keys.front_m, 0) - (t - 0.2);
+  };
+  EXPECT_LE(late(meeting.after_s), 0);
+  EXPECT_GT(late(meeting.after_s - 0.125), 0) << "the earliest of the moments that it looks at";
+}
+
+TEST(PlayerRoles, WhoHasPassedLeavesTheBallToTheReceiver) {
+  OnField one;
+  one.scene.me = {-1, 0, 0};
+  const double before = cost_of(one.scene, one.memory);
+  one.scene.now_s = 10;
+  one.memory.passed_s = 9;
+  EXPECT_NEAR(cost_of(one.scene, one.memory) - before, 1.5, exact);
+  one.memory.passed_s = 8;
+  EXPECT_EQ(cost_of(one.scene, one.memory), before);
+}
+
 TEST(PlayerRoles, WhoHasTakenASetPieceLeavesTheBallToOthers) {
   OnField one;
   one.scene.me = {-1, 0, 0};
@@ -279,11 +316,52 @@ TEST(PlayerGame, ACommandHeardTwiceActsOnce) {
 TEST(PlayerAims, AShotKeepsOffThePost) {
   OnField one;
   one.scene.opponents.push_back({{11, 0, 0}, {}, 2 * robot_radius_m});
-  // From 6 m the keeper in the middle reaches 0.36 + 1.1 (6 / 8.25 - 0.15)^2 = 0.73 m to each side. Of the points at
-  // 0.79 m and 1.06 m the outer one is too near to the post at 1.2 m, the ball having a radius of 0.11 m and a scatter of 0.27 m.
-  const Shot shot = best_shot(one.scene, {5, 0, 0});
+  // From 4 m the keeper in the middle reaches 0.36 + 1.43 (3.93 / 7.7 - 0.15)^2 = 0.55 m to each side, and a ball towards
+  // 0.79 m passes it at 0.74 m: 0.195 m of room for a scatter of 0.2 m. Towards 1.06 m only 0.03 m are left to the post.
+  const Shot shot = best_shot(one.scene, {7, 0, 0});
   EXPECT_NEAR(std::abs(shot.at.y), 0.792, exact);
-  EXPECT_NEAR(shot.chance, 0.58, 0.01);
+  EXPECT_NEAR(shot.chance, 0.5 + 0.5 * 0.1953 / 0.1996, 2e-3);
+}
+
+TEST(PlayerAims, APassArrivesAsFastAsTheHandlerTakesIt) {
+  OnField one;
+  for (const double way : {4.0, 9.0}) {
+    // Kicked, it slides until it rolls with three fifths of its speed; then 0.25 m/s^2 slow it down.
+    const double rolls = 0.6 * pass_speed(one.scene, way);
+    const Vec3 half_way = ball_after({}, {rolls, 0, 0}, 1), after{rolls - 0.25, 0, 0};
+    const double left = way - half_way.x;
+    EXPECT_NEAR(dot(after, after) - 2 * 0.25 * left, 1.6 * 1.6, 1e-9) << way;
+  }
+  EXPECT_EQ(pass_speed(one.scene, 0.5), one.keys.pass_speed_mps) << "so soft a kick would not be worth it";
+}
+
+TEST(PlayerAims, APassGoesToWhereTheTeamMateStopsAndNotBeyond) {
+  for (const double left : {3.0, 0.5}) {
+    OnField one;
+    one.keys.shot_range_m = 1;
+    one.scene.ball = {3, 0, 0};
+    Mate& mate = one.mate(3, {7, 3, 0}, 9);
+    mate.velocity = {0, -2, 0};  // 0.8 m in 0.4 s
+    mate.target = mate.at + Vec3{0, -left, 0};
+    choose_aim(one.scene, one.memory);
+    EXPECT_EQ(one.memory.aim, Aim::pass);
+    expect_place(one.memory.at, 7, left > 0.8 ? 2.2 : 2.5);
+  }
+}
+
+TEST(PlayerAims, TheSupporterOffersItselfBesideWhoStandsInTheLane) {
+  OnField one;
+  one.scene.ball = {-2, 0, 0};
+  one.scene.me = {-2, 3, 0};
+  const Vec3 usual{1, 0, 0};
+  EXPECT_GT(free_place(one.scene, usual).x, 3.9) << "nobody there: straight ahead, as far as it looks";
+  one.scene.opponents.push_back({{0.5, 0, 0}, {}, 2 * robot_radius_m});
+  const Vec3 place = free_place(one.scene, usual);
+  const Vec3 off = place - one.scene.ball;
+  // The opponent is 2.5 m ahead of the ball: of a lane at 0.7 rad it keeps off by 2.5 sin(0.7) = 1.6 m.
+  EXPECT_NEAR(std::abs(math::atan2(off.y, off.x)), 0.7, 1e-9);
+  EXPECT_GT(place.y, 0) << "on the side where it is";
+  EXPECT_NEAR(room_beside(one.scene, one.scene.ball, place, 1e9, 0, 0), 2.5 * math::sin(0.7), 1e-9);
 }
 
 TEST(PlayerAims, TurnsTheLessTheNearerAnOpponentIs) {

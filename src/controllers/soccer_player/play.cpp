@@ -10,7 +10,27 @@
 namespace sandlot::controllers::soccer_player {
 namespace {
 
+/// Time before a ball arrives in which the player begins to move with it.
+constexpr double gives_way_s = 0.4;
+
 double heading(Vec3 v) { return math::atan2(v.y, v.x); }
+
+/// Lets a moving ball come to the front: a ball that comes is met on its way, by a player that faces it and gives way as fast as the
+/// handler needs; one that goes away is followed.
+Intent receive(const Scene& scene, const Meeting& meeting, Intent out) {
+  const Vec3 off = flat(scene.ball - scene.me), way = normalised(scene.ball_velocity);
+  const double front = scene.keys->front_m, speed = norm(scene.ball_velocity), ahead = -dot(off, way);
+  out.yaw_rad = heading(off);
+  if (ahead < 0) {
+    out.target = meeting.at - front * normalised(off);
+    return out;
+  }
+  out.target = meeting.at + front * way;
+  const double comes_mps = speed - dot(scene.velocity, way), beside = norm(off + ahead * way);
+  if (beside < 0.3 && comes_mps > catch_mps && ahead - front < gives_way_s * comes_mps)
+    out.moves_on = (speed - catch_mps) * way;
+  return out;
+}
 
 /// Gets the ball and plays it to where the memory aims.
 Intent play_ball(const Scene& scene, Memory& memory) {
@@ -41,8 +61,9 @@ Intent play_ball(const Scene& scene, Memory& memory) {
   const double along = dot(off, direction), across = std::abs(off.x * direction.y - off.y * direction.x);
   const bool right_behind = along > 0.15 && across < 0.06 + 0.3 * std::max(0.0, along - 0.32);
   if (speed > 0.7 && distance > 0.6) {  // meets it where it comes
-    const Meeting meeting = meet(scene, scene.me);
+    const Meeting meeting = meet(scene);
     out.name = "intercept";
+    if (scene.has_handler) return receive(scene, meeting, out);
     // Not in its way from the front: the place beside which it passes is met head on.
     out.target = meeting.at - scene.keys->front_m * normalised(ball - meeting.at, direction) +
                  0.6 * scene.keys->front_m * normalised(ball - meeting.at, direction);
@@ -56,7 +77,7 @@ Intent play_ball(const Scene& scene, Memory& memory) {
     out.target = ball - 0.2 * normalised(off);
     out.moves_on = scene.ball_velocity;
     out.keeps_clear = distance > 0.8;
-    out.speed_mps = distance < 1 ? 0.6 + distance : out.speed_mps;
+    if (distance < 1) out.speed_mps = std::min(out.speed_mps, speed + 0.6 + distance);
     return out;
   }
   if (right_behind) {
@@ -108,7 +129,7 @@ Intent keep(const Scene& scene, Memory& memory, bool may_leave) {
                     ball.x > -gx - 0.1;
   double sooner = 1e9;
   for (const Mate& mate : scene.mates) sooner = std::min(sooner, mate.cost_s);
-  const double mine = meet(scene, scene.me).after_s;
+  const double mine = meet(scene).after_s;
   if (may_leave &&
       (scene.holds || (near && norm(scene.ball_velocity) < 1.5 && (mine < sooner || ball.x < 0.9 - gx)))) {
     if (scene.now_s > memory.until_s || memory.aim == Aim::none || memory.aim == Aim::dribble)

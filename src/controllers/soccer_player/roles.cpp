@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "controllers/soccer_player/aims.h"
 #include "controllers/soccer_player/tracking.h"
 
 namespace sandlot::controllers::soccer_player {
@@ -12,13 +13,10 @@ constexpr double keeps_role_s = 0.5, keeps_role_at_piece_s = 4;
 constexpr double keeps_place_m2 = 1, keeps_place_at_piece_m2 = 9;
 
 constexpr double no_second_touch_s = 8;
-
-/// Time for a way, from a standing start.
-double time_for(const Scene& scene, double way_m) {
-  const double v = scene.keys->speed_mps, a = scene.keys->acceleration_mps2;
-  const double fast = way_m - v * v / (2 * a);
-  return fast > 0 ? v / a + fast / v : std::sqrt(2 * way_m / a);
-}
+/// Who has passed leaves the ball to the receiver for a while.
+constexpr double after_pass_s = 1.5, after_pass_cost_s = 1.5;
+/// A ball that comes is awaited: this long before it is there the player is.
+constexpr double early_s = 0.2;
 
 /// Places of those that do not have the ball, the most urgent first.
 std::array<Vec3, 3> places(const Scene& scene) {
@@ -44,27 +42,39 @@ std::array<Vec3, 3> places(const Scene& scene) {
 
 }  // namespace
 
-Meeting meet(const Scene& scene, Vec3 me) {
+double time_for(const Keys& keys, double way_m, double speed_mps) {
+  const double v = keys.speed_mps, a = keys.acceleration_mps2, u = std::clamp(speed_mps, -v, v);
+  const double fast = way_m - (v * v - u * u) / (2 * a);
+  if (fast > 0) return (v - u) / a + fast / v;
+  return (std::sqrt(u * u + 2 * a * std::max(0.0, way_m)) - u) / a;
+}
+
+Meeting meet(const Scene& scene) {
+  const auto time_to = [&](Vec3 at) {
+    const Vec3 off = flat(at - scene.me);
+    return time_for(*scene.keys, norm(off) - scene.keys->front_m, dot(scene.velocity, normalised(off)));
+  };
   Vec3 at = scene.ball;
   for (int k = 0; k <= 24; ++k) {
     const double t = 0.125 * k;
     at = ball_after(scene.ball, scene.ball_velocity, t);
-    if (time_for(scene, std::max(0.0, norm(at - me) - scene.keys->front_m)) <= t + 0.05) return {at, t};
+    if (time_to(at) <= std::max(0.05, t - early_s)) return {at, t};
     if (dot(scene.ball_velocity, scene.ball_velocity) < 0.01) break;
   }
-  return {at, time_for(scene, std::max(0.0, norm(at - me) - scene.keys->front_m))};
+  return {at, time_to(at)};
 }
 
 double cost_of(const Scene& scene, const Memory& memory) {
   if (!scene.ball_known) return 50;
   if (scene.holds) return 0;
   if (scene.game.piece != Piece::none && !scene.open)
-    return time_for(scene, norm(scene.ball - scene.me)) + (memory.taken ? no_second_touch_s : 0);
-  const Meeting meeting = meet(scene, scene.me);
+    return time_for(*scene.keys, norm(scene.ball - scene.me), 0) + (memory.taken ? no_second_touch_s : 0);
+  const Meeting meeting = meet(scene);
   const Vec3 goal{scene.goal_x(), 0, 0};
   const Vec3 to_goal = normalised(goal - meeting.at), from_me = normalised(meeting.at - scene.me);
   double cost = meeting.after_s + 0.5 * (1 - dot(to_goal, from_me));
   if (memory.taken) cost += no_second_touch_s;
+  if (scene.now_s - memory.passed_s < after_pass_s) cost += after_pass_cost_s;
   return cost;
 }
 
@@ -124,6 +134,7 @@ Task task_of(const Scene& scene, const Memory& memory, double own_cost_s) {
       task.place = i < others ? static_cast<int>(best[i]) + 1 : 3;
       task.role = roles[static_cast<std::size_t>(task.place - 1)];
       task.target = spots[static_cast<std::size_t>(task.place - 1)];
+      if (task.place == 1 && scene.style.offers && !piece) task.target = free_place(scene, task.target);
       if (i >= others) task.target.y -= 1.5 * static_cast<double>(i - others + 1);
     }
   return task;

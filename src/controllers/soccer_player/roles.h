@@ -10,12 +10,14 @@
 
 namespace sandlot::controllers::soccer_player {
 
-/// Where and when the player at `me` meets the ball at the earliest.
+/// Least time for a way that begins at a speed along it (negative: away), with the keys' acceleration and largest speed.
+double time_for(const Keys& keys, double way_m, double speed_mps);
+/// Where and when the player meets the ball at the earliest, being there 0.2 s before a ball that comes.
 struct Meeting {
   Vec3 at;
   double after_s = 0;
 };
-Meeting meet(const Scene& scene, Vec3 me);
+Meeting meet(const Scene& scene);
 /// Cost of getting the ball and playing it forward [s].
 double cost_of(const Scene& scene, const Memory& memory);
 

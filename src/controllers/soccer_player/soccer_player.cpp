@@ -336,11 +336,15 @@ void SoccerPlayer::fill_scene(const Observation& obs) {
     scene.opponents.push_back({flip(each.at), flip(each.velocity), 2 * robot_radius_m});
   if (memory.taken) memory.taken = !is_free_again();
   if (holds_ && !memory.held) {
-    memory.held_at = state.ball.at;
-    memory.held_s = now_s_;
+    // A ball that slipped away for less than half a second is the same one to the referee.
+    if (now_s_ - memory.let_s > 0.5) {
+      memory.held_at = state.ball.at;
+      memory.held_s = now_s_;
+    }
     memory.until_s = -1e9;
   }
   memory.held = holds_;
+  if (holds_) memory.let_s = now_s_;
 }
 
 /// Whether another robot has touched the ball since this one took a set piece, as far as can be seen.
@@ -374,6 +378,7 @@ void SoccerPlayer::kick(const Observation& obs, Command& cmd) {
   const double speed = std::max(0.5, norm(wanted));
   cmd.set(*kicker_, msg::Float64{ball_mass_kg * speed});
   memory.kicked_s = now_s_;
+  if (memory.aim == Aim::pass) memory.passed_s = now_s_;
   memory.taken = scene_.game.piece != Piece::none && scene_.game.whose == Whose::ours;
   ++memory.kicks;
 }
