@@ -15,6 +15,8 @@ constexpr double last_way_m = 2.5, brakes_mps2 = 2.6;
 constexpr double rolls_on = 0.6;
 /// Mean share on its way to the goal, part of which it slides.
 constexpr double shot_share = 0.7;
+/// Uncertainty of what an opponent reaches: it may have begun to move, or see the ball late.
+constexpr double reach_std_m = 0.15;
 constexpr double body_m = 0.36;  ///< robot and ball side by side
 
 /// Speed of a clearance from a set piece.
@@ -153,7 +155,8 @@ Shot best_shot(const Scene& scene, Vec3 from) {
     // Seen from aside the mouth is narrower.
     const double post = (half - std::abs(at.y) - ball_radius_m) * way.x / length;
     const double scatter = 0.05 + 0.035 * length;
-    const double chance = std::clamp(0.5 + 0.5 * std::min(room, post) / scatter, 0.0, 1.0);
+    const double chance =
+        std::clamp(0.5 + 0.5 * std::min(room / (scatter + reach_std_m), post / scatter), 0.0, 1.0);
     if (chance > best.chance + 1e-9) best = {at, chance};
   }
   best.chance = std::max(0.0, best.chance);

@@ -5,7 +5,7 @@
 ///          beside the touch lines. What may be done is worth the probability that it comes off times the worth of where the
 ///          ball is then:
 ///          shot      1 if it passes opponents and lies between the posts. An opponent reaches 0.36 m and what it drives until the ball
-///                    is there; the ball scatters by 0.05 m and 3.5 % of the way;
+///                    is there; the ball scatters by 0.05 m and 3.5 % of the way, and the reach by 0.15 m;
 ///          pass      to where a team-mate will be, on a line that no opponent reaches sooner, better where no opponent is near it;
 ///          carry     with the handler, in seven directions, as far as the rules let it;
 ///          push on   a soft kick ahead to where the player itself is sooner than anybody else;

@@ -120,7 +120,7 @@ struct Style {
 };
 constexpr Style style_of(Play play) {
   switch (play) {
-    case Play::passing: return {1.3, 1, 1, true, 0.45, 0, true};
+    case Play::passing: return {1.3, 1, 0.7, true, 0.45, 0, true};
     case Play::dribbling: return {0.7, 1.2, 1.3, false, 0.45, 0, true};
     case Play::pressing: return {1, 1, 1, false, 0.55, 1, true};
     case Play::run_and_kick: break;
