@@ -17,6 +17,8 @@ constexpr double rolls_on = 0.6;
 constexpr double shot_share = 0.7;
 /// Uncertainty of what an opponent reaches: it may have begun to move, or see the ball late.
 constexpr double reach_std_m = 0.15;
+/// A place across the way from the ball to the goal counts this much to a supporter, which else would run from side to side.
+constexpr double across_lane = 0.7;
 constexpr double body_m = 0.36;  ///< robot and ball side by side
 
 /// Speed of a clearance from a set piece.
@@ -94,7 +96,9 @@ const Mate* best_receiver(const Scene& scene, double least_gain_m, double& value
     const Vec3 to = receives_at(mate);
     const double way = norm(to - scene.ball), gain = to.x - scene.ball.x;
     if (way < 1.8 || way > 10 || gain < least_gain_m || !inside(scene, to, 0.3)) continue;
-    const double each = pass_chance(scene, to) * worth(scene, to);
+    // Who runs is hard to meet, and has to brake before it can wait for the ball.
+    const double stands = std::max(0.2, 1 - 0.25 * norm(mate.velocity));
+    const double each = stands * pass_chance(scene, to) * worth(scene, to);
     if (each > value) value = each, best = &mate;
   }
   return best;
@@ -109,11 +113,15 @@ double pass_speed(const Scene& scene, double way_m) {
 
 Vec3 free_place(const Scene& scene, Vec3 usual) {
   const Vec3 ahead = normalised(Vec3{scene.goal_x(), 0, 0} - scene.ball);
+  const auto beside = [&](Vec3 at) {
+    return ahead.x * (at.y - scene.ball.y) - ahead.y * (at.x - scene.ball.x);
+  };
   Vec3 best = usual;
   double most = -1;
   const auto consider = [&](Vec3 at) {
     if (!inside(scene, at, 0.8) || at.x > scene.goal_x() - scene.field.penalty_area_depth_m - 0.5) return;
-    const double value = pass_chance(scene, at) * worth(scene, at) - 0.002 * norm(at - scene.me);
+    double value = pass_chance(scene, at) * worth(scene, at) - 0.002 * norm(at - scene.me);
+    if (beside(at) * beside(scene.me) < 0 && std::abs(beside(scene.me)) > 1) value *= across_lane;
     if (value > most) most = value, best = at;
   };
   consider(usual);
@@ -155,8 +163,8 @@ Shot best_shot(const Scene& scene, Vec3 from) {
     // Seen from aside the mouth is narrower.
     const double post = (half - std::abs(at.y) - ball_radius_m) * way.x / length;
     const double scatter = 0.05 + 0.035 * length;
-    const double chance =
-        std::clamp(0.5 + 0.5 * std::min(room / (scatter + reach_std_m), post / scatter), 0.0, 1.0);
+    const double chance = std::clamp(0.5 + 0.5 * std::min(room / (scatter + reach_std_m), post / scatter),
+                                     0.0, 1.0);
     if (chance > best.chance + 1e-9) best = {at, chance};
   }
   best.chance = std::max(0.0, best.chance);

@@ -26,7 +26,8 @@ void aim_of_piece(const Scene& scene, Memory& memory);
 void aim_of_keeper(const Scene& scene, Memory& memory);
 
 /// Place in front of the ball where the supporter can be reached by a pass, of 15 at 3 to 6 m from the ball the one where the
-/// ball would be worth most, less 0.002 per metre of its own way there; `usual` is a sixteenth.
+/// ball would be worth most, less 0.002 per metre of its own way there; `usual` is a sixteenth. One on the other
+/// side of the way to the goal counts less.
 Vec3 free_place(const Scene& scene, Vec3 usual);
 
 /// Speed with which to kick a ball that shall arrive after a way at `catch_mps`.

@@ -343,11 +343,26 @@ TEST(PlayerAims, APassGoesToWhereTheTeamMateStopsAndNotBeyond) {
     one.keys.shot_range_m = 1;
     one.scene.ball = {3, 0, 0};
     Mate& mate = one.mate(3, {7, 3, 0}, 9);
+    one.scene.style.pushes = 0;
     mate.velocity = {0, -2, 0};  // 0.8 m in 0.4 s
     mate.target = mate.at + Vec3{0, -left, 0};
     choose_aim(one.scene, one.memory);
     EXPECT_EQ(one.memory.aim, Aim::pass);
     expect_place(one.memory.at, 7, left > 0.8 ? 2.2 : 2.5);
+  }
+}
+
+TEST(PlayerAims, OfTwoPlacesAsGoodThePassGoesToWhoStands) {
+  for (const std::int32_t stands : {3, 4}) {
+    OnField one;
+    one.scene.ball = {3, 0, 0};
+    one.keys.shot_range_m = 1;
+    one.mate(3, {6, -3, 0}, 9).velocity = {0, stands == 3 ? 0.0 : 2.0, 0};
+    one.mate(4, {6, 3, 0}, 9).velocity = {0, stands == 4 ? 0.0 : -2.0, 0};
+    for (Mate& each : one.scene.mates) each.target = each.at;
+    choose_aim(one.scene, one.memory);
+    EXPECT_EQ(one.memory.aim, Aim::pass);
+    expect_place(one.memory.at, 6, stands == 3 ? -3 : 3);
   }
 }
 
