@@ -109,54 +109,53 @@ int poisson(double mean, Stream& random) {
   return count;
 }
 
-}  // namespace
+/// The places of one object that rays go to.
+struct Look {
+  std::array<double, places> distance_m;
+  std::array<bool, places> shown;  ///< in the picture
+  double deep_m = 0;               ///< half the object's extent along the line of sight
+  double farthest_m = 0;           ///< of the places
+  std::size_t first_ray = 0;
+  bool any = false;  ///< none shown: no rays
+};
 
-double visible_part(const LabelledObject& target, const CameraMount& mount, const Context& context) {
-  const Pose X_WS = mount.X_WS(context);
+/// @param direction_S  out: of `places` rays
+Look look_at(const LabelledObject& target, const CameraMount& mount, const Pose& X_WS, const Context& context,
+             std::span<Vec3> direction_S) {
   const Pose& X_WB = context.engine.states()[target.bodies.front()].X_WB;
   const Vec3 middle_W = middle_of(target, context);
   const Vec3 ahead_W = normalised(middle_W - X_WS.p);
   const Vec3 side_W = normalised(cross({0, 0, 1}, ahead_W), {0, 1, 0}), up_W = cross(ahead_W, side_W);
   const Vec3 size = target.bounds_B.size();
   const auto half = [&](Vec3 axis_W) { return half_extent(size, rotate_inverse(X_WB.q, axis_W)); };
-  const double wide = spread * half(side_W), high = spread * half(up_W), deep = half(ahead_W);
+  const double wide = spread * half(side_W), high = spread * half(up_W);
 
-  std::array<Vec3, places> direction_S;
-  std::array<double, places> distance;
-  std::array<bool, places> shown;
-  bool any = false;
-  double farthest = 0;
+  Look look{.deep_m = half(ahead_W)};
   for (std::size_t i = 0; i < places; ++i) {
     const double u = static_cast<double>(i % across) - 1, v = static_cast<double>(i / across) - 1;
     const Vec3 place_W = middle_W + side_W * (u * wide) + up_W * (v * high);
     const Vec3 place_S = rotate_inverse(X_WS.q, place_W - X_WS.p);
-    distance[i] = norm(place_S);
+    look.distance_m[i] = norm(place_S);
     direction_S[i] = normalised(place_S);
-    shown[i] = in_picture(mount.lens(), place_S);
-    any = any || shown[i];
-    farthest = std::max(farthest, distance[i]);
+    look.shown[i] = in_picture(mount.lens(), place_S);
+    look.any = look.any || look.shown[i];
+    look.farthest_m = std::max(look.farthest_m, look.distance_m[i]);
   }
-  if (!any) return 0;
+  return look;
+}
 
-  std::array<float, places> hit_m;
-  std::array<std::uint32_t, places> hit;
-  const RayJob job{.X_WS = X_WS,
-                   .directions = direction_S,
-                   .min_m = 0,
-                   .max_m = farthest + deep,
-                   .ignore_body = mount.body,
-                   .distance_m = hit_m,
-                   .body = hit};
-  context.rays.cast({&job, 1});
+/// The part of an object that is seen, from 0 to 1, from what its rays met. What lies behind the object counts as nothing.
+double visible_part(const LabelledObject& target, const Look& look, std::span<const float> hit_m,
+                    std::span<const std::uint32_t> hit) {
   int seen = 0, hidden = 0, open = 0;  // open: nothing is met where the thing might have been
   bool middle_open = false;
   for (std::size_t i = 0; i < places; ++i) {
-    const bool met = std::isfinite(hit_m[i]);
+    const bool met = static_cast<double>(hit_m[i]) <= look.farthest_m + look.deep_m;
     if (met && std::find(target.bodies.begin(), target.bodies.end(), hit[i]) != target.bodies.end()) {
-      ++(shown[i] ? seen : hidden);
-    } else if (met && static_cast<double>(hit_m[i]) < distance[i] - deep) {
+      ++(look.shown[i] ? seen : hidden);
+    } else if (met && static_cast<double>(hit_m[i]) < look.distance_m[i] - look.deep_m) {
       ++hidden;
-    } else if (shown[i]) {
+    } else if (look.shown[i]) {
       ++open;
       middle_open = middle_open || i == places / 2;
     }
@@ -164,6 +163,53 @@ double visible_part(const LabelledObject& target, const CameraMount& mount, cons
   if (seen == 0 && middle_open) seen = open;
   return seen == 0 ? 0 : static_cast<double>(seen) / (seen + hidden);
 }
+
+/// Objects that are looked at together: rays of one job share what the ray caster finds out about their origin.
+constexpr std::size_t at_once = 16;
+
+/// An object that may be detected.
+struct Candidate {
+  const LabelledObject* target = nullptr;
+  Measured truth{};
+  double visible = 0;
+};
+
+/// Fills `visible` of those within range.
+void look_at_all(std::span<Candidate> candidates, double max_range_m, const CameraMount& mount,
+                 const Pose& X_WS, const Context& context) {
+  std::array<Look, at_once> looks;
+  std::array<Vec3, at_once * places> directions_S;
+  std::array<float, at_once * places> hit_m;
+  std::array<std::uint32_t, at_once * places> hit;
+  std::size_t rays = 0;
+  double reach_m = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    looks[i] = {};
+    if (!(candidates[i].truth.range <= max_range_m)) continue;
+    looks[i] = look_at(*candidates[i].target, mount, X_WS, context,
+                       std::span(directions_S).subspan(rays, places));
+    if (!looks[i].any) continue;
+    looks[i].first_ray = rays;
+    rays += places;
+    reach_m = std::max(reach_m, looks[i].farthest_m + looks[i].deep_m);
+  }
+  if (rays == 0) return;
+  const RayJob job{.X_WS = X_WS,
+                   .directions = std::span(directions_S).first(rays),
+                   .min_m = 0,
+                   .max_m = reach_m,
+                   .ignore_body = mount.body,
+                   .distance_m = std::span(hit_m).first(rays),
+                   .body = std::span(hit).first(rays)};
+  context.rays.cast({&job, 1});
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (looks[i].any)
+      candidates[i].visible = visible_part(*candidates[i].target, looks[i],
+                                           std::span(hit_m).subspan(looks[i].first_ray, places),
+                                           std::span(hit).subspan(looks[i].first_ray, places));
+}
+
+}  // namespace
 
 void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& mount,
             std::uint64_t sample, double since_s, const Context& context, msg::ObjectArray* objects,
@@ -180,14 +226,11 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
   const auto position_std = [&](double range) {
     return errors * (world.position_std_m + world.position_std_per_m * range);
   };
-  for (const LabelledObject& target : context.labelled_objects) {
-    if (!wanted(keys, target.label)) continue;
-    if (std::find(target.bodies.begin(), target.bodies.end(), mount.body) != target.bodies.end()) continue;
-    const Vec3 middle_S = rotate_inverse(X_WS.q, middle_of(target, context) - X_WS.p);
-    const Measured truth = measure(middle_S);
+  const auto report = [&](const Candidate& candidate) {
+    const LabelledObject& target = *candidate.target;
+    const Measured& truth = candidate.truth;
+    const double visible = candidate.visible;
     const bool anyway = placed && world.everything;
-    double visible = 0;
-    if (truth.range <= keys.max_range_m) visible = visible_part(target, mount, context);
     const double miss = std::min(1.0, errors * (keys.miss_rate + keys.miss_rate_per_m * truth.range +
                                                 keys.miss_rate_hidden * (1 - visible)));
     Stream random = base.fork(entity_key(target.name));
@@ -197,7 +240,7 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
     std::array<double, 6> n;
     for (double& each : n) each = random.normal();
     const bool seen = visible > 0 && visible >= keys.min_visible && !missed;
-    if (!seen && !anyway) continue;
+    if (!seen && !anyway) return;
     const std::string_view label = confused ? another(labels, target.label, random) : target.label;
     const double confidence = (1 - miss) * visible;
     if (seen && found) {
@@ -223,7 +266,22 @@ void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const
       out.pose.q = quat_from_axis_angle({0, 0, 1}, errors * world.heading_std_rad * n[5]) * out.pose.q;
       out.confidence = world.everything ? 1 : confidence;
     }
+  };
+  std::array<Candidate, at_once> candidates;
+  std::size_t count = 0;
+  const auto report_all = [&] {
+    look_at_all(std::span(candidates).first(count), keys.max_range_m, mount, X_WS, context);
+    for (std::size_t i = 0; i < count; ++i) report(candidates[i]);
+    count = 0;
+  };
+  for (const LabelledObject& target : context.labelled_objects) {
+    if (!wanted(keys, target.label)) continue;
+    if (std::find(target.bodies.begin(), target.bodies.end(), mount.body) != target.bodies.end()) continue;
+    const Vec3 middle_S = rotate_inverse(X_WS.q, middle_of(target, context) - X_WS.p);
+    candidates[count++] = {&target, measure(middle_S)};
+    if (count == at_once) report_all();
   }
+  report_all();
 
   Stream random = base.fork(1);
   for (int left = ghosts > 0 && !labels.empty() ? poisson(ghosts, random) : 0; left > 0; --left) {

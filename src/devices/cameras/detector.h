@@ -79,9 +79,6 @@ struct WorldKeys {
   }
 };
 
-/// The part of an object that is seen through the lens, from 0 to 1.
-double visible_part(const LabelledObject& target, const CameraMount& mount, const Context& context);
-
 /// Fills those of the two messages that are wanted (not null); publishing is the caller's.
 /// @param since_s  time since the previous sample, for ghosts
 void detect(const ObjectKeys& keys, const WorldKeys& world, double errors, const CameraMount& mount,

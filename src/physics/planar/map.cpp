@@ -223,16 +223,18 @@ inline bool Map::passes_by(const Ray& ray, Vec2 centre, double radius_m, const H
   return !(c.first <= c.last) || c.first > hit.t || c.last < ray.min_m;
 }
 
+inline void Map::meet_part(const Ray& ray, const Silhouette& silhouette, std::size_t i, Hit& hit) {
+  const Outline& part = silhouette.parts[i];
+  if (ray.dz == 0 && (ray.z < part.heights.min_m || ray.z > part.heights.max_m)) return;
+  if (passes_by(ray, part.centre, part.radius_m, hit)) return;
+  const Chord c = chord(part, silhouette.edges, ray.origin, ray.direction);
+  if (c.first <= c.last) hit.meet(ray, c, part.heights, silhouette.bodies[i]);
+}
+
 void Map::meet_silhouette(const Ray& ray, const Disc& disc, Hit& hit) const {
   if (passes_by(ray, disc.centre, disc.radius_m, hit)) return;
   const Silhouette& silhouette = silhouettes_[disc.silhouette];
-  for (std::size_t i = 0; i < silhouette.parts.size(); ++i) {
-    const Outline& part = silhouette.parts[i];
-    if (ray.dz == 0 && (ray.z < part.heights.min_m || ray.z > part.heights.max_m)) continue;
-    if (passes_by(ray, part.centre, part.radius_m, hit)) continue;
-    const Chord c = chord(part, silhouette.edges, ray.origin, ray.direction);
-    if (c.first <= c.last) hit.meet(ray, c, part.heights, silhouette.bodies[i]);
-  }
+  for (std::size_t i = 0; i < silhouette.parts.size(); ++i) meet_part(ray, silhouette, i, hit);
 }
 
 /// The same as a walk, without cells: where there are few things, or one is lost far away, those are too many.
@@ -370,16 +372,17 @@ bool Map::gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const {
 }
 
 /// Things that many rays from one place may meet, by sectors of direction: a ray then looks at those of its sector, the nearest
-/// first.
+/// first. To level rays, parts of silhouettes are things of their own: most have none at their height.
 struct Map::Fan {
   static constexpr std::size_t most = 64, fewest_rays = 16;
   static constexpr int sectors = 64;
+  static constexpr std::uint32_t wall = ~0u, whole = ~0u - 1;
   struct Thing {
     double near_m;  ///< none of it is nearer
     Vec2 centre;    ///< from the rays' origin
     double radius_m;
-    std::uint32_t index;
-    bool wall;
+    std::uint32_t index;  ///< of a disc or wall
+    std::uint32_t part;   ///< of the disc's silhouette, `whole` or `wall`
   };
   std::size_t count = 0;
   std::array<Thing, most> things;
@@ -393,22 +396,47 @@ struct Map::Fan {
   }
 };
 
-/// @return false when there are too many things for it to be worth while, or too few rays
-bool Map::spread(const RayJob& job, std::uint32_t ignored, Fan& fan) const {
-  const std::size_t known = filed_.size() + walls_.size();
-  if (job.directions.size() < Fan::fewest_rays || known > Fan::most || !(job.min_m >= 0)) return false;
+/// Fills fan.things, in any order. @return false when there are too many
+bool Map::collect(const RayJob& job, std::uint32_t ignored, bool level, Fan& fan) const {
   const Vec2 o{job.X_WS.p.x, job.X_WS.p.y};
-  const auto take = [&](Vec2 centre, double radius_m, std::uint32_t index, bool wall) {
+  fan.count = 0;
+  bool fits = true;
+  const auto add = [&](Vec2 centre, double radius_m, std::uint32_t index, std::uint32_t part) {
     const Vec2 c = centre - o;
     // As in passes_by(): far beyond rounding, so that the exact outlines decide alone.
     const double r = radius_m * (1 + 1e-9) + 1e-9, near_m = std::sqrt(dot(c, c)) * (1 - 1e-9) - r;
     if (near_m > job.max_m * (1 + 1e-6)) return;
-    fan.things[fan.count++] = {near_m, c, r, index, wall};
+    fits = fits && fan.count < Fan::most;
+    if (fits) fan.things[fan.count++] = {near_m, c, r, index, part};
   };
-  for (const std::uint32_t k : filed_)
-    if (discs_[k].instance != ignored) take(discs_[k].centre, discs_[k].radius_m, k, false);
+  const auto add_outline = [&](const Outline& outline, std::uint32_t index, std::uint32_t part) {
+    const Heights h = outline.heights;
+    if (!level || (job.X_WS.p.z >= h.min_m && job.X_WS.p.z <= h.max_m))
+      add(outline.centre, outline.radius_m, index, part);
+  };
+  for (const std::uint32_t k : filed_) {
+    const Disc& disc = discs_[k];
+    if (disc.instance == ignored) continue;
+    if (!level || disc.silhouette == ~0u) {
+      add(disc.centre, disc.radius_m, k, Fan::whole);
+      continue;
+    }
+    const std::vector<Outline>& parts = silhouettes_[disc.silhouette].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) add_outline(parts[i], k, i);
+  }
   for (std::uint32_t k = 0; k < walls_.size(); ++k)
-    if (walls_[k].instance != ignored) take(walls_[k].outline.centre, walls_[k].outline.radius_m, k, true);
+    if (walls_[k].instance != ignored) add_outline(walls_[k].outline, k, Fan::wall);
+  return fits;
+}
+
+/// @return false when there are too many things for it to be worth while, or too few rays
+bool Map::spread(const RayJob& job, std::uint32_t ignored, Fan& fan) const {
+  if (job.directions.size() < Fan::fewest_rays || !(job.min_m >= 0)) return false;
+  if (filed_.size() + walls_.size() > Fan::most) return false;
+  const bool level = rotate(job.X_WS.q, {1, 0, 0}).z == 0 && rotate(job.X_WS.q, {0, 1, 0}).z == 0 &&
+                     std::all_of(job.directions.begin(), job.directions.end(),
+                                 [](const Vec3& d) { return d.z == 0; });
+  if (!(level && collect(job, ignored, true, fan)) && !collect(job, ignored, false, fan)) return false;
   std::sort(fan.things.begin(), fan.things.begin() + static_cast<std::ptrdiff_t>(fan.count),
             [](const Fan::Thing& a, const Fan::Thing& b) { return a.near_m < b.near_m; });
   fan.in_sector.fill(0);
@@ -435,10 +463,12 @@ void Map::meet_in_direction(const Ray& ray, const Fan& fan, Hit& hit) const {
        left &= left - 1) {
     const Fan::Thing& thing = fan.things[static_cast<std::size_t>(std::countr_zero(left))];
     if (thing.near_m > 0 && thing.near_m * thing.near_m > hit.t * hit.t * ray.length2 * (1 + 1e-6)) return;
-    if (thing.wall) {
+    if (thing.part == Fan::wall) {
       const Outline& outline = walls_[thing.index].outline;
       if (!passes_by(ray, outline.centre, outline.radius_m, hit)) meet_wall(ray, thing.index, hit);
-    } else if (const Disc& disc = discs_[thing.index]; disc.silhouette == ~0u) {
+    } else if (const Disc& disc = discs_[thing.index]; thing.part != Fan::whole) {
+      meet_part(ray, silhouettes_[disc.silhouette], thing.part, hit);
+    } else if (disc.silhouette == ~0u) {
       hit.meet(ray, disc);
     } else {
       meet_silhouette(ray, disc, hit);

@@ -83,11 +83,13 @@ class Map {
   template <bool with_walls>
   void walk(const Ray& ray, const Start* shared, Hit& hit) const;
   bool gather(const RayJob& job, std::uint32_t ignored, Reach& reach) const;
+  bool collect(const RayJob& job, std::uint32_t ignored, bool level, Fan& fan) const;
   bool spread(const RayJob& job, std::uint32_t ignored, Fan& fan) const;
   void meet_in_direction(const Ray& ray, const Fan& fan, Hit& hit) const;
   void meet_walls(const Ray& ray, std::span<const std::uint32_t> walls, Hit& hit) const;
   void meet_wall(const Ray& ray, std::uint32_t wall, Hit& hit) const;
   static bool passes_by(const Ray& ray, Vec2 centre, double radius_m, const Hit& hit);
+  static void meet_part(const Ray& ray, const Silhouette& silhouette, std::size_t i, Hit& hit);
   void meet_silhouette(const Ray& ray, const Disc& disc, Hit& hit) const;
   void meet_all(const Ray& ray, Hit& hit) const;
 

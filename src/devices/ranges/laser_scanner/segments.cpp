@@ -10,25 +10,30 @@ namespace {
 
 constexpr int halvings = 5;
 
-double cross_z(Vec3 a, Vec3 b) { return a.x * b.y - a.y * b.x; }
+double cross_z(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+double length(Vec2 a) { return std::sqrt(dot(a, a)); }
 
 /// Distance at which a ray from S's origin meets the line through two points; negative: not ahead.
-double along(Vec3 direction, Vec3 a, Vec3 b) {
+double along(Vec2 direction, Vec2 a, Vec2 b) {
   const double across = cross_z(direction, b - a);
   return std::abs(across) > 1e-12 ? cross_z(a, b - a) / across : -1;
 }
 
 }  // namespace
 
-SegmentFinder::Echo SegmentFinder::towards(double angle_rad) {
-  const auto [s, c] = math::sincos(angle_rad);
-  return {.angle_rad = angle_rad, .direction_S = {c, s, 0}};
+/// Fills the directions of `fresh_`.
+void SegmentFinder::aim() {
+  angles_rad_.clear();
+  for (const Echo& echo : fresh_) angles_rad_.push_back(echo.angle_rad);
+  sin_cos_.resize(fresh_.size());
+  math::sincos(angles_rad_, sin_cos_);
+  for (std::size_t i = 0; i < fresh_.size(); ++i) fresh_[i].direction_S = {sin_cos_[i].cos, sin_cos_[i].sin};
 }
 
 /// Casts the rays of `fresh_`.
 void SegmentFinder::cast(const RayCaster& rays, RayJob job, double min_m) {
   directions_.clear();
-  for (const Echo& echo : fresh_) directions_.push_back(echo.direction_S);
+  for (const Echo& echo : fresh_) directions_.push_back({echo.direction_S.x, echo.direction_S.y, 0});
   distances_m_.resize(fresh_.size());
   bodies_.assign(fresh_.size(), no_body);
   job.directions = directions_;
@@ -39,7 +44,8 @@ void SegmentFinder::cast(const RayCaster& rays, RayJob job, double min_m) {
     const auto distance_m = static_cast<double>(distances_m_[i]);
     const bool seen = std::isfinite(distance_m) && distance_m >= min_m;
     fresh_[i].body = seen ? bodies_[i] : no_body;
-    fresh_[i].point_S = fresh_[i].direction_S * (seen ? distance_m : 0);
+    fresh_[i].point_S = (seen ? distance_m : 0) * fresh_[i].direction_S;
+    fresh_[i].range_m = length(fresh_[i].point_S);
   }
 }
 
@@ -50,7 +56,7 @@ void SegmentFinder::link(double tolerance_m) {
     const Echo &a = echoes_[from], &b = echoes_[over], &c = echoes_[to];
     if (a.body != b.body) return false;
     const double expected_m = along(c.direction_S, a.point_S, b.point_S);
-    return expected_m >= 0 && std::abs(expected_m - norm(c.point_S)) <= tolerance_m;
+    return expected_m >= 0 && std::abs(expected_m - c.range_m) <= tolerance_m;
   };
   for (std::size_t i = 0; i + 1 < echoes_.size(); ++i) {
     Echo& echo = echoes_[i];
@@ -68,20 +74,20 @@ void SegmentFinder::cut(std::size_t begin, std::size_t end, const Fan& fan,
   while (!pieces_.empty()) {
     const auto [first, last] = pieces_.back();
     pieces_.pop_back();
-    const Vec3 a = echoes_[first].point_S, b = echoes_[last].point_S;
-    const double length_m = norm(b - a);
+    const Vec2 a = echoes_[first].point_S, b = echoes_[last].point_S;
+    const double length_m = length(b - a);
     std::size_t farthest = first;
     double most_m = fan.tolerance_m;
     for (std::size_t i = first + 1; i < last; ++i) {
-      const Vec3 p = echoes_[i].point_S;
-      const double off_m = length_m > 1e-9 ? std::abs(cross_z(b - a, p - a)) / length_m : norm(p - a);
+      const Vec2 p = echoes_[i].point_S;
+      const double off_m = length_m > 1e-9 ? std::abs(cross_z(b - a, p - a)) / length_m : length(p - a);
       if (off_m > most_m) most_m = off_m, farthest = i;
     }
     if (farthest != first) {
       pieces_.emplace_back(farthest, last);  // the right piece is taken first
       pieces_.emplace_back(first, farthest);
     } else if (length_m >= fan.min_length_m) {
-      out.push_back({a, b});
+      out.push_back({{a.x, a.y, 0}, {b.x, b.y, 0}});
     }
   }
 }
@@ -95,9 +101,11 @@ void SegmentFinder::find(const Fan& fan, const RayCaster& rays, RayJob job,
   if (fan.first_rad != fan_.first_rad || fan.last_rad != fan_.last_rad || fan.step_rad != fan_.step_rad ||
       first_.empty()) {
     fan_ = fan;
-    first_.clear();
+    fresh_.clear();
     for (std::size_t i = 0; i <= gaps; ++i)
-      first_.push_back(towards(fan.first_rad + step_rad * static_cast<double>(i)));
+      fresh_.push_back({.angle_rad = fan.first_rad + step_rad * static_cast<double>(i)});
+    aim();
+    first_ = fresh_;
   }
   fresh_ = first_;
   cast(rays, job, fan.min_m);
@@ -112,9 +120,10 @@ void SegmentFinder::find(const Fan& fan, const RayCaster& rays, RayJob job,
       const bool nothing = a.body == no_body && b.body == no_body;
       // Only the gaps that the round before has left this wide.
       if (nothing || a.linked || b.angle_rad - a.angle_rad > 1.5 * gap_rad) continue;
-      fresh_.push_back(towards(0.5 * (a.angle_rad + b.angle_rad)));
+      fresh_.push_back({.angle_rad = 0.5 * (a.angle_rad + b.angle_rad)});
     }
     if (fresh_.empty()) break;
+    aim();
     cast(rays, job, fan.min_m);
     merged_.clear();
     std::merge(echoes_.begin(), echoes_.end(), fresh_.begin(), fresh_.end(), std::back_inserter(merged_),

@@ -16,7 +16,9 @@
 ///          extraction algorithms using 2D laser rangefinder (IROS 2005): split and merge.
 #include <vector>
 
+#include "base/math_list.h"
 #include "geometry/rays.h"
+#include "geometry/vec2.h"
 #include "messages/line_segments.h"
 
 namespace sandlot::laser_scanner {
@@ -33,11 +35,12 @@ class SegmentFinder {
  private:
   struct Echo {
     double angle_rad = 0;
-    Vec3 direction_S, point_S;
+    Vec2 direction_S, point_S;
+    double range_m = 0;  ///< to point_S
     std::uint32_t body = no_body;
     bool linked = false;  ///< to the next: one straight line of one link
   };
-  static Echo towards(double angle_rad);
+  void aim();
   void cast(const RayCaster& rays, RayJob job, double min_m);
   void link(double tolerance_m);
   void cut(std::size_t begin, std::size_t end, const Fan& fan, std::vector<msg::LineSegment>& out);
@@ -45,6 +48,8 @@ class SegmentFinder {
   Fan fan_;                  ///< for which `first_` was made
   std::vector<Echo> first_;  ///< its rays before they meet anything
   std::vector<Echo> echoes_, fresh_, merged_;
+  std::vector<double> angles_rad_;
+  std::vector<math::SinCos> sin_cos_;
   std::vector<Vec3> directions_;
   std::vector<float> distances_m_;
   std::vector<std::uint32_t> bodies_;
