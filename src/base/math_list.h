@@ -1,7 +1,6 @@
 #pragma once
 /// Functions of base/math.h over lists, with the same bits: several values at a time where the processor has vectors.
 ///
-/// Cost    sine and cosine together 9 ns, where one by one they take 27.
 #include <span>
 
 #include "base/math.h"

@@ -23,8 +23,8 @@ double along(Vec2 direction, Vec2 a, Vec2 b) {
 
 /// Fills the directions of `fresh_`.
 void SegmentFinder::aim() {
-  angles_rad_.clear();
-  for (const Echo& echo : fresh_) angles_rad_.push_back(echo.angle_rad);
+  angles_rad_.resize(fresh_.size());
+  for (std::size_t i = 0; i < fresh_.size(); ++i) angles_rad_[i] = fresh_[i].angle_rad;
   sin_cos_.resize(fresh_.size());
   math::sincos(angles_rad_, sin_cos_);
   for (std::size_t i = 0; i < fresh_.size(); ++i) fresh_[i].direction_S = {sin_cos_[i].cos, sin_cos_[i].sin};
@@ -32,8 +32,9 @@ void SegmentFinder::aim() {
 
 /// Casts the rays of `fresh_`.
 void SegmentFinder::cast(const RayCaster& rays, RayJob job, double min_m) {
-  directions_.clear();
-  for (const Echo& echo : fresh_) directions_.push_back({echo.direction_S.x, echo.direction_S.y, 0});
+  directions_.resize(fresh_.size());
+  for (std::size_t i = 0; i < fresh_.size(); ++i)
+    directions_[i] = {fresh_[i].direction_S.x, fresh_[i].direction_S.y, 0};
   distances_m_.resize(fresh_.size());
   bodies_.assign(fresh_.size(), no_body);
   job.directions = directions_;
@@ -109,7 +110,7 @@ void SegmentFinder::find(const Fan& fan, const RayCaster& rays, RayJob job,
   }
   fresh_ = first_;
   cast(rays, job, fan.min_m);
-  echoes_ = fresh_;
+  std::swap(echoes_, fresh_);
   const std::size_t most = 5 * echoes_.size() + 32;
   double gap_rad = step_rad;
   for (int round = 0; round < halvings; ++round, gap_rad *= 0.5) {
