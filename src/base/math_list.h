@@ -1,6 +1,5 @@
 #pragma once
 /// Functions of base/math.h over lists, with the same bits: several values at a time where the processor has vectors.
-///
 #include <span>
 
 #include "base/math.h"
