@@ -34,7 +34,7 @@ TEST(Server, SaysWhoItIsAndWhatThereIs) {
          {"/tf", "/tf_static", "/clock", "/rosout", "/sandlot/world", "/sandlot/poses", "/sandlot/status",
           "/sandlot/commands", "/sandlot/contacts", "/sandlot/deliveries", "/sandlot/batteries"})
       EXPECT_EQ(viewer.channels.count(topic), 1u) << topic;
-    EXPECT_EQ(viewer.services.size(), 33u);
+    EXPECT_EQ(viewer.services.size(), 34u);
   }
 }
 
@@ -540,7 +540,7 @@ TEST(Server, DevicesOfferServicesThatComeAndGoWithThem) {
   EXPECT_NE(said["text"].get<std::string>().find("the odometry is at zero"), std::string::npos) << said;
   EXPECT_TRUE(viewer.call("/delete_entity", {{"entity", "rover1"}})["result"]["result"] == 1);
   EXPECT_TRUE(viewer.until([&] { return !offered(); }));
-  EXPECT_EQ(viewer.services.size(), 28u);
+  EXPECT_EQ(viewer.services.size(), 29u);
 }
 
 TEST(Server, WarningsOfTheProgramAreLogLines) {

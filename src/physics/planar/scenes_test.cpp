@@ -20,7 +20,7 @@ struct Scene {
   World w;
   struct Thing {
     InstanceId id;
-    double mass_kg, inertia, inner_m, outer_m;
+    double moved_kg, inertia, inner_m, outer_m;
   };
   std::vector<Thing> things;
   std::vector<InstanceId> ids;
@@ -56,14 +56,15 @@ struct Scene {
                         {0, 0, m->links[0].inertial.moments.z * wz / h_s}};
       w.engine.apply({&kick, 1});
       const double inner = i % 3 == 0 ? 0.25 * size : size, outer = i % 3 == 0 ? 1.5 * size : size;
-      things.push_back({id, mass, m->links[0].inertial.moments.z, inner, outer});
+      const double moved_kg = i % 3 == 1 && s.mu > 0 ? 1.4 * mass : mass;  // a ball rolls: m + I / r^2
+      things.push_back({id, moved_kg, m->links[0].inertial.moments.z, inner, outer});
     }
   }
   double energy() {
     double sum = 0;
     for (const Thing& t : things) {
       const Velocity V = w.state(t.id).V_WB;
-      sum += 0.5 * t.mass_kg * dot(V.linear, V.linear) + 0.5 * t.inertia * V.angular.z * V.angular.z;
+      sum += 0.5 * t.moved_kg * dot(V.linear, V.linear) + 0.5 * t.inertia * V.angular.z * V.angular.z;
     }
     return sum;
   }
