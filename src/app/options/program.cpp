@@ -90,7 +90,7 @@ void add_reproduce(CommandLine& line) {
   verb->add_option("--traces", options.traces,
                    "msl: files of `run --step-times` to use instead of runs; may be given several times");
   verb->add_flag("--quick", options.quick,
-                 "mario: without the loop through the vineyard, which takes minutes");
+                 "Leave out what takes minutes: mario's loop through the vineyard, games of msl");
   verb->footer(
       "Example: sandlot reproduce cooperation --out report\n         sandlot reproduce mario --out report "
       "--quick");
