@@ -1,4 +1,5 @@
 // PNG with a palette, for screenshots of grass: a third of the size of one in full colour. Median cut, without dithering, which costs more than it shows.
+import { writeFileSync } from "node:fs";
 import { deflateSync } from "node:zlib";
 
 /** @param rgba  pixels, row by row, of which the opacity is ignored  @return the file */
@@ -61,4 +62,19 @@ function chunk(type, data) {
   }
   out.writeUInt32BE(~crc >>> 0, data.length + 8);
   return out;
+}
+
+/** Writes what a page of Playwright shows, with a palette. */
+export async function saveScreenshot(page, file, colours) {
+  const taken = (await page.screenshot()).toString("base64");
+  const { width, height, pixels } = await page.evaluate(async (data) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: "image/png" }));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const image = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let text = "";
+    for (let i = 0; i < image.data.length; i += 4096) text += String.fromCharCode(...image.data.subarray(i, i + 4096));
+    return { width: bitmap.width, height: bitmap.height, pixels: btoa(text) };
+  }, taken);
+  writeFileSync(file, indexedPng(width, height, Buffer.from(pixels, "base64"), colours));
 }

@@ -1,11 +1,10 @@
 // Takes the picture of docs/page.md on plans and estimates: MARIO in the vineyard, in Debian's Chromium. `./dev test` installs what it needs.
 //
 //   node tools/make_vineyard_picture.mjs [FILE]      FILE is docs/images/vineyard_page.png when left out
-import { writeFileSync } from "node:fs";
 import { chromium } from "../tests/js/node_modules/playwright-core/index.mjs";
 import { Scratch, Served, until } from "../tests/js/served.mjs";
 import { Viewer } from "../tests/js/viewer.mjs";
-import { indexedPng } from "./indexed_png.mjs";
+import { saveScreenshot } from "./indexed_png.mjs";
 
 const file = process.argv[2] ?? "docs/images/vineyard_page.png";
 // MARIO has turned into its second row: the ellipses differ most, by wheels alone, by eyes alone and by all sensors. It takes some minutes to get there.
@@ -38,17 +37,7 @@ try {
     scene.invalidate();
   });
   await page.waitForTimeout(6000);  // what is still being drawn
-  const taken = (await page.screenshot()).toString("base64");
-  const { width, height, pixels } = await page.evaluate(async (data) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: "image/png" }));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const image = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    let text = "";
-    for (let i = 0; i < image.data.length; i += 4096) text += String.fromCharCode(...image.data.subarray(i, i + 4096));
-    return { width: bitmap.width, height: bitmap.height, pixels: btoa(text) };
-  }, taken);
-  writeFileSync(file, indexedPng(width, height, Buffer.from(pixels, "base64")));
+  await saveScreenshot(page, file);
 } finally {
   await browser.close();
   viewer.close();

@@ -112,8 +112,7 @@ struct Keys {
 struct Style {
   /// Factors on the worth of passes, of carrying the ball and of pushing it on.
   double passes, carries, pushes;
-  bool
-      offers;  ///< whether the supporter seeks a place that a pass reaches; else it has a fixed one beside the ball
+  bool offers;   ///< the supporter seeks a place that a pass reaches; else it has a fixed one beside the ball
   double line;   ///< depth of the defence: 0 at the goal, 1 at the ball
   int pressers;  ///< players that go for a ball of the opponents beside the attacker
   bool places;   ///< whether those without the ball take places

@@ -32,8 +32,8 @@ struct alignas(64) RigidGroup {
   std::uint32_t slot = none;                ///< of its instance; none: there is no such group
   std::uint32_t index = 0;                  ///< in the instance's plan
   std::uint32_t silhouette = none;          ///< none: a circle
-  bool rolls =
-      false;  ///< a ball on the ground: what pushes it turns it, too, so that inverse_kg is that of m + I / r^2
+  /// A ball on the ground: what pushes it turns it, too, so that inverse_kg is that of m + I / r^2.
+  bool rolls = false;
   double reach_m = 0;  ///< how far it may come in this step
   Vec2 force_N;        ///< of wrenches, consumed by the next step
   double torque_Nm = 0;
