@@ -98,7 +98,7 @@ double mono_fit(std::span<const MonoPoint> points, int steps, Rigid& X_10) {
       MonoMatrix5 damped = normal;
       damped.diagonal() *= 1 + damping;
       damped.diagonal().array() += 1e-15;
-      const MonoVector5 move = damped.ldlt().solve(right);
+      const MonoVector5 move = solve_symmetric(damped, right);
       if (!move.allFinite()) return std::numeric_limits<double>::infinity();
       Rigid next = X_10;
       next.R = small_turn(move.head<3>()) * X_10.R;
@@ -222,7 +222,7 @@ MonoTurn mono_turn(const MonoPoints& points, const Eigen::Matrix3d& guess) {
       right.noalias() += weight * slope.transpose() * error;
       out.errors_px.push_back(error_px);
     }
-    const Eigen::Vector3d move = out.normal.ldlt().solve(right);
+    const Eigen::Vector3d move = solve_symmetric(out.normal, right);
     if (!move.allFinite() || !(move.norm() < 10)) break;
     if (move.norm() < 1e-9) break;
     out.R = small_turn(move) * out.R;
@@ -316,7 +316,7 @@ void mono_answer_turn(const MonoSpec& spec, const MonoPoints& points, const Mono
   errors.topLeftCorner<3, 3>() = hidden * hidden * Eigen::Matrix3d::Identity();
   // What little parallax there is may have gone into the rotation.
   errors.bottomRightCorner<3, 3>() = variance / (f * f) *
-                                         turn.normal.ldlt().solve(Eigen::Matrix3d::Identity()) +
+                                         Eigen::Matrix3d(inverse_symmetric(turn.normal)) +
                                      tilt * tilt * Eigen::Matrix3d::Identity();
   out.X_KS = motion_of_S(X_10);
   out.errors = errors_of_S(errors);
@@ -416,7 +416,7 @@ MonoMotion estimate_motion(const MonoSpec& spec, std::span<const FlowMatch> matc
   by.bottomLeftCorner<3, 3>().setIdentity();
   const double common = spec.common_error_px * spec.common_error_px / (f * f) *
                         static_cast<double>(inliers.size());
-  parts.topLeftCorner<5, 5>() = (variance + common) * normal.ldlt().solve(MonoMatrix5::Identity());
+  parts.topLeftCorner<5, 5>() = (variance + common) * MonoMatrix5(inverse_symmetric(normal));
   parts(5, 5) = scale * scale * ground.deviation * ground.deviation;
   out.X_KS = motion_of_S(X_10);
   out.errors = errors_of_S(by * parts * by.transpose());

@@ -7,6 +7,16 @@ Eigen::Matrix3d rigid_rotation(Quat q) { return Eigen::Quaterniond(q.w, q.x, q.y
 
 }  // namespace
 
+SmallMatrix solve_symmetric(const SmallMatrix& A, const SmallMatrix& B, double* rcond) {
+  const Eigen::LDLT<SmallMatrix> solver(A);
+  if (rcond) *rcond = solver.rcond();
+  return solver.solve(B);
+}
+
+SmallMatrix inverse_symmetric(const SmallMatrix& A) {
+  return solve_symmetric(A, SmallMatrix::Identity(A.rows(), A.cols()));
+}
+
 Eigen::Matrix3d small_turn(const Eigen::Vector3d& turn) {
   return Eigen::Quaterniond(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z())
       .normalized()

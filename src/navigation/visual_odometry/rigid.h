@@ -6,6 +6,13 @@
 
 namespace sandlot::navigation::vo {
 
+/// Of at most six rows and columns.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+/// X with A X = B for a symmetric A. Eigen's L D L^T, compiled once for all sizes.
+/// @param rcond  when given: estimate of the reciprocal condition number of A
+SmallMatrix solve_symmetric(const SmallMatrix& A, const SmallMatrix& B, double* rcond = nullptr);
+SmallMatrix inverse_symmetric(const SmallMatrix& A);
+
 /// Takes points from one camera's optical frame (x right, y down, z forward) to another's.
 struct Rigid {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();

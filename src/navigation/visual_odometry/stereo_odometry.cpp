@@ -112,9 +112,9 @@ bool stereo_fit(const StereoCamera& camera, std::span<const StereoPoint> points,
         right.noalias() += J.transpose() * errors;
       }
     }
-    const Eigen::LDLT<StereoMatrix6> solver(normal);
-    if (!(solver.rcond() > 1e-14)) return false;
-    const StereoVector6 move = solver.solve(right);
+    double rcond = 0;
+    const StereoVector6 move = solve_symmetric(normal, right, &rcond);
+    if (!(rcond > 1e-14)) return false;
     // 1 m in each direction and a radian are far beyond what successive images leave in common.
     if (!move.allFinite() || move.cwiseAbs().maxCoeff() > 10) return false;
     X_10.move(move.head<3>(), move.tail<3>());
@@ -273,7 +273,7 @@ StereoMotion estimate_motion(const StereoSpec& spec, std::span<const StereoMatch
   out.residual_px = std::sqrt(variance);
   out.X_KS = motion_of_S(X_10);
   const double common = spec.common_error_px * spec.common_error_px * static_cast<double>(inliers.size());
-  out.errors = errors_of_S((variance + common) * normal.ldlt().solve(StereoMatrix6::Identity()));
+  out.errors = errors_of_S((variance + common) * StereoMatrix6(inverse_symmetric(normal)));
   const double deviation = std::sqrt(out.errors[0] + out.errors[7] + out.errors[14]);
   out.outcome = deviation <= spec.max_position_deviation_m ? Outcome::moved : Outcome::uncertain;
   return out;
