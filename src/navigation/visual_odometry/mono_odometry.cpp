@@ -315,8 +315,7 @@ void mono_answer_turn(const MonoSpec& spec, const MonoPoints& points, const Mono
   const double hidden = spec.min_parallax_px / f * 5 * spec.camera.height_m, tilt = out.parallax_px / f;
   errors.topLeftCorner<3, 3>() = hidden * hidden * Eigen::Matrix3d::Identity();
   // What little parallax there is may have gone into the rotation.
-  errors.bottomRightCorner<3, 3>() = variance / (f * f) *
-                                         Eigen::Matrix3d(inverse_symmetric(turn.normal)) +
+  errors.bottomRightCorner<3, 3>() = variance / (f * f) * Eigen::Matrix3d(inverse_symmetric(turn.normal)) +
                                      tilt * tilt * Eigen::Matrix3d::Identity();
   out.X_KS = motion_of_S(X_10);
   out.errors = errors_of_S(errors);
