@@ -13,6 +13,10 @@ namespace fs = std::filesystem;
 
 TEST(Examples, EachFolderStandsAlone) {
   const bool sandboxes = static_cast<bool>(programs::sandbox_version());
+  const auto user = programs::program_user();
+  // A clone in /root, for instance.
+  const bool is_hidden = user && !sandboxes &&
+                         !programs::can_read(*user, fs::absolute("robios/include").string());
   int checked = 0;
   for (const auto& folder : fs::directory_iterator("examples")) {
     ASSERT_TRUE(folder.is_directory()) << folder.path() << " belongs to no example";
@@ -42,6 +46,11 @@ TEST(Examples, EachFolderStandsAlone) {
         text = std::regex_replace(text, std::regex("kind: robios,"), "kind: robios, sandbox: off,");
       const std::string yaml = scratch.write(file.path().filename(), text);
       const Printed printed = sandlot("run " + yaml + " --headless --duration 1s");
+      if (is_hidden && text.find("kind: robios") != std::string::npos) {
+        EXPECT_EQ(printed.exit_code, 2);
+        EXPECT_NE(printed.out.find("the user nobody, who cannot read '"), std::string::npos) << printed.out;
+        continue;
+      }
       EXPECT_EQ(printed.exit_code, 0) << folder.path() << "\n" << printed.out;
     }
   }

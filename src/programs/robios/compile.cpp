@@ -349,6 +349,13 @@ Result<ProgramLaunch> prepare(const Source& source) {
     out.read_folders.push_back(library.folder);
     out.environment.push_back("LD_LIBRARY_PATH=" + library.folder);
   }
+  if (const auto user = program_user(); user && !out.budget.sandbox)
+    for (const fs::path& each : {file, fs::path(library.folder) / ("librobios" + std::to_string(api) + ".so"),
+                                 fs::path(library.headers) / "eyebot.h"})
+      if (fs::exists(each, none) && !can_read(*user, each.string()))
+        return Error{
+            "programs of root run as the user nobody, who cannot read '" + each.string() + "'",
+            "let others read it and pass the folders above it (chmod o+rx), or put it outside of /root"};
   const std::string missing = "this Sandlot has no library of RoBIOS " + std::to_string(api);
   if (language != Language::none) {
     if (library.folder.empty() || library.headers.empty())

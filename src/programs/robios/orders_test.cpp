@@ -7,8 +7,10 @@
 #include <cstring>
 #include <limits>
 
+#include "base/test_folder.h"
 #include "programs/robios/compile.h"
 #include "programs/robios/shared_memory.h"
+#include "programs/sandbox.h"
 
 namespace sandlot::programs::robios {
 namespace {
@@ -148,6 +150,17 @@ TEST(RobiosPrograms, WhatIsNoProgramIsSaidSo) {
   const auto text = prepare({"passwd", "/etc", 0, {}, {}});
   ASSERT_FALSE(text);
   EXPECT_THAT(text.error().text(), HasSubstr("'passwd' is not a program"));
+}
+
+TEST(RobiosPrograms, WithoutASandboxWhatNobodyCanReadIsNamed) {
+  const test::TestFolder folder;  // mode 0700
+  folder.write("drive.c", "int main() {}");
+  Source source{"drive.c", folder.path.string(), 0, {}, {}};
+  source.budget.sandbox = false;
+  const auto made = prepare(source);
+  const bool is_refused = !made && made.error().text().find("who cannot read '" + folder.file("drive.c") +
+                                                            "'") != std::string::npos;
+  EXPECT_EQ(is_refused, program_user().has_value()) << (made ? "" : made.error().text());
 }
 
 }  // namespace
