@@ -95,7 +95,8 @@ class Box(unittest.TestCase):
         attacked = self.summary()
         self.start()
         self.assertEqual(self.summary()["state_hash"], attacked["state_hash"])
-        self.assertEqual(attacked["refbox"]["teams"][0]["wrong"], 1)
+        # The flood, and half a message of the station that took the place of the first.
+        self.assertEqual(attacked["refbox"]["teams"][0]["wrong"], 2)
 
     def test_poses_that_are_no_numbers_are_counted_and_change_nothing(self):
         nan, inf = float("nan"), float("inf")  # as Python writes them, which is not JSON

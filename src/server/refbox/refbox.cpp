@@ -220,6 +220,7 @@ void Refbox::Impl::received(TcpPort::Id id, std::string_view bytes) {
         ++team->report.wrong;
         team->report.error = next.error().text();
         note(true, fmt::format("{} is disconnected: {}", name_of(team->report.side), next.error().text()));
+        team->stream = {};
         ends = true;
         break;
       }
@@ -253,6 +254,12 @@ void Refbox::Impl::disconnected(TcpPort::Id id) {
   const std::lock_guard lock(mutex);
   Team* const team = team_of(id);
   if (!team) return;
+  if (const std::size_t left = team->stream.waiting(); left > 0) {
+    ++team->report.wrong;
+    team->report.error = fmt::format("the connection ended within a message, after {} bytes without NUL",
+                                     left);
+    note(true, fmt::format("a message of {}: {}", name_of(team->report.side), team->report.error));
+  }
   team->connection = 0;
   team->stream = {};
   team->report.address.clear();

@@ -195,6 +195,7 @@ TEST(RefboxAttacks, AFloodWithoutNulEndsItsConnectionAlone) {
   cyan.rest();
   EXPECT_TRUE(cyan.ended);
   EXPECT_EQ(box.team(Side::cyan).error, "more than 100000 bytes without a NUL; end each message with a NUL");
+  EXPECT_EQ(box.team(Side::cyan).wrong, 1u) << "once";
   box.box->say({{"STOP"}});
   EXPECT_EQ(next(magenta), R"({"command":"STOP","targetTeam":""})");
   Socket again = box.station();
@@ -216,7 +217,7 @@ TEST(RefboxAttacks, AFloodOfMessagesIsDroppedBeyondItsRate) {
   EXPECT_GE(box.team(Side::cyan).world_states, 200u);
 }
 
-TEST(RefboxAttacks, HalfAMessageIsForgottenWithItsConnection) {
+TEST(RefboxAttacks, HalfAMessageIsCountedAndForgottenWithItsConnection) {
   ServedBox box;
   {
     Socket cyan = box.station();
@@ -224,11 +225,13 @@ TEST(RefboxAttacks, HalfAMessageIsForgottenWithItsConnection) {
     cyan.send(std::string_view(good_state).substr(0, 40));
   }
   ASSERT_TRUE(soon([&] { return box.team(Side::cyan).address.empty(); }));
+  EXPECT_EQ(box.team(Side::cyan).wrong, 1u);
+  EXPECT_EQ(box.team(Side::cyan).error, "the connection ended within a message, after 40 bytes without NUL");
   Socket again = box.station();
   EXPECT_NE(next(again), "");
   again.send(good_state + "\0"s);
   ASSERT_TRUE(soon([&] { return box.team(Side::cyan).world_states == 1; }));
-  EXPECT_EQ(box.team(Side::cyan).wrong, 0u);
+  EXPECT_EQ(box.team(Side::cyan).wrong, 1u);
   EXPECT_EQ(box.team(Side::cyan).connections, 2u);
 }
 
