@@ -257,6 +257,22 @@ TEST(Picture, NoSurfaceShadesItself) {
   EXPECT_EQ(with.rgb, Shot(studio, job).rgb);
 }
 
+TEST(Picture, NorFarAway) {
+  // 3 km away a place is known to 0.2 mm, and to ten times that along a wall that is seen and lit aslant.
+  Studio studio;
+  studio.add(Mesh{std::make_shared<TriangleMesh>(tessellate(Box{{1, 400, 400}}))},
+             {{3000, 0, 0}, quat_from_rpy(0.2, 0.3, 1.2)});
+  studio.light(model::Light::Type::directional, {{}, along({1, 0.2, -0.1})});
+  PictureJob job;
+  job.lens = pinhole(320, 240, 0.1);
+  const Shot with(studio, job);
+  job.exposure.shadows = false;
+  const Shot without(studio, job);
+  EXPECT_EQ(with.rgb, without.rgb);
+  EXPECT_GT(std::count_if(without.rgb.begin(), without.rgb.end(), [](auto x) { return x > 50 && x < 200; }),
+            10000);
+}
+
 // ---- textures
 
 TEST(Picture, ACheckerboardFadesIntoGreyTowardsTheHorizon) {

@@ -461,6 +461,33 @@ TEST(Cameras, AMirrorSeesBehind) {
   EXPECT_NEAR(norm(rotate(X.q, {0, 1, 0}) - Vec3{-1, 0, 0}), 0, 1e-12);
 }
 
+/// Where the horizon lies in an image of 240 rows whose height the rim fills, by the tangents seen from the camera below.
+///   hyperbolic  a^2 / b from the axis, at the focus, 2 c from the camera; the rim b sqrt(1 + r^2 / a^2) + c from it
+///   parabolic   a of r, since the camera is orthographic
+///   spherical   at 38.18 degrees from the axis: 2 theta + alpha = 90 degrees
+TEST(Cameras, TheHorizonLiesWhereEachMirrorsDefaultsPutIt) {
+  const double a = 5e-3 * std::sqrt(233.3), b = 5e-3 * std::sqrt(1135.7), c = std::sqrt(a * a + b * b),
+               rim = 0.05;
+  const double theta = 38.18 * math::pi / 180;
+  const double hyperbolic = a * a / b / (2 * c) / (rim / (b * std::sqrt(1 + rim * rim / (a * a)) + c));
+  const double spherical = 0.06 * math::sin(theta) / (0.2 - 0.06 * math::cos(theta)) /
+                           (rim / (0.2 - std::sqrt(0.06 * 0.06 - rim * rim)));
+  for (const auto& [mirror, share] :
+       {std::pair{"", hyperbolic}, std::pair{"hyperbolic", hyperbolic}, std::pair{"parabolic", 0.034 / rim},
+        std::pair{"spherical", spherical}}) {
+    Stage stage("omni_camera");
+    stage.ball("b", "ball", {20, 0, 0}, 1);
+    Node keys = config({{"width", "240"}, {"height", "240"}});
+    if (*mirror) keys.set("mirror", Node::scalar(mirror));
+    ASSERT_TRUE(stage.add("eye", std::move(keys), image_bit));
+    stage.draw();
+    const auto [u, v, n] = red(stage.picture("eye/image"));
+    EXPECT_GT(n, 10) << mirror;
+    EXPECT_NEAR(u, 119.5, 0.3) << mirror;
+    EXPECT_NEAR(119.5 - v, 120 * share, 0.5) << mirror;
+  }
+}
+
 TEST(Cameras, StereoSeesTheDisparityOfTheDepth) {
   Stage stage("stereo_camera");
   stage.ball("b", "ball", {2, -0.25, 0}, 0.1);
