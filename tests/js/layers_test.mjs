@@ -117,6 +117,7 @@ const topics = ["map", "plan", "particles", "fix", "estimate"].map((name) => `/r
 
 test("the layers of a robot are listed with what they say", { skip }, async () => {
   await page.locator(`${by("tree")} [data-address="rover"]`).click();
+  await until("the list is open", async () => (await page.locator(by("layers-fold")).getAttribute("aria-expanded")) === "true");
   const expected = { "/rover/guide/map": "80 × 80, 5.0 cm", "/rover/guide/plan": "3 poses", "/rover/guide/particles": "200 particles", "/rover/guide/estimate": "± 1.00 m", "/rover/guide/fix": "± 0.20 m" };
   for (const [topic, text] of Object.entries(expected)) {
     await layer(topic).waitFor();

@@ -64,6 +64,8 @@ test("the board has the referee's score and clock, not what a robot was told", {
   await until("the score", async () => (await text("board-cyan")) === "1");
   assert.equal(await text("board-magenta"), "0");
   assert.equal(await text("board-stage"), "First half");
+  // What the robots' devices say is a layer that is off: the list of layers is folded, and hides nothing of the board.
+  if (await page.locator(by("layers")).isVisible()) assert.equal(await page.locator(by("layers-fold")).getAttribute("aria-expanded"), "false");
   assert.match(await text("board"), /Tidal.*Ember/);
   assert.equal(await text("board-news"), "In play");
   // The clock of the game runs 3 s behind that of the run, which is paused: the latest state is up to 0.2 s old.

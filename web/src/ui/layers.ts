@@ -34,10 +34,12 @@ interface Row {
 }
 
 export class LayersLegend {
-  private readonly body = h('div', {class: 'legend-body'});
-  private readonly fold = h('button', {class: 'plain small legend-head', testid: 'layers-fold', on: {click: () => this.setFolded(!this.folded)}}, icon('chevron', 12), h('span', {}, 'Layers'));
+  private readonly body = h('div', {class: 'legend-body', hidden: true});
+  private readonly fold = h('button', {class: 'plain small legend-head', testid: 'layers-fold', on: {click: () => this.choose()}}, icon('chevron', 12), h('span', {}, 'Layers'));
   readonly element = h('section', {class: 'float legend', 'aria-label': 'Layers', hidden: true, testid: 'layers'}, this.fold, this.body);
-  private folded = remembered('layers.folded', false);
+  /** 'yes' or 'no' by the user; else it is folded until something of it is drawn. */
+  private chosen = remembered<string>('layers.fold', '');
+  private used = false;
   private readonly rows = new Map<string, Row>();
   private built = '';
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -45,7 +47,6 @@ export class LayersLegend {
 
   constructor(private readonly layers: Layers) {
     layers.onChange.on(() => this.soon());
-    this.setFolded(this.folded);
   }
 
   setShown(shown: boolean): void {
@@ -53,9 +54,20 @@ export class LayersLegend {
     this.show();
   }
 
-  private setFolded(folded: boolean): void {
-    this.folded = folded;
-    remember('layers.folded', folded);
+  private choose(): void {
+    this.chosen = this.body.hidden ? 'no' : 'yes';
+    remember('layers.fold', this.chosen);
+    this.showFold();
+  }
+
+  private toggle(layer: Layer): void {
+    this.used = true;  // who switches the last one off may want it again
+    this.layers.toggle(layer.topic);
+  }
+
+  private showFold(): void {
+    const folded = this.chosen === '' ? !this.used && this.layers.list.every((layer) => !layer.on) : this.chosen === 'yes';
+    if (folded === this.body.hidden && this.fold.title !== '') return;
     this.body.hidden = folded;
     this.fold.setAttribute('aria-expanded', String(!folded));
     this.fold.title = folded ? 'Show which layers are drawn' : 'Fold the list of layers';
@@ -78,6 +90,7 @@ export class LayersLegend {
       this.build();
     }
     for (const layer of list) this.showRow(layer);
+    this.showFold();
   }
 
   private build(): void {
@@ -91,7 +104,7 @@ export class LayersLegend {
       }
       const info = h('span', {class: 'info'});
       const [light, dark] = LAYER_COLORS[layer.color % LAYER_COLORS.length] as readonly [string, string];
-      const element = h('button', {class: 'plain layer', testid: 'layer', 'data-topic': layer.topic, style: {'--light': light, '--dark': dark}, on: {click: () => this.layers.toggle(layer.topic)}},
+      const element = h('button', {class: 'plain layer', testid: 'layer', 'data-topic': layer.topic, style: {'--light': light, '--dark': dark}, on: {click: () => this.toggle(layer)}},
           swatch(layer), h('span', {class: 'name ellipsis'}, layer.label), info);
       this.rows.set(layer.topic, {element, info, key: ''});
       this.body.append(element);
