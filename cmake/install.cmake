@@ -10,14 +10,16 @@ set(headers ${CMAKE_BINARY_DIR}/public)
 install(CODE "execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_SOURCE_DIR}/src -DGENERATED=${SANDLOT_GENERATED}
   -DOUT=${headers} -P \"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
 install(DIRECTORY ${headers}/sandlot DESTINATION include)
-install(DIRECTORY models worlds scenarios teams templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS)
+# What Python left beside a program that ran in this folder names the folder.
+install(DIRECTORY models worlds scenarios teams templates DESTINATION share/sandlot USE_SOURCE_PERMISSIONS
+  PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY clients/python/ DESTINATION share/sandlot/python PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY clients/cpp/sandlot_client DESTINATION include)
 install(FILES cmake/sandlot_clientConfig.cmake DESTINATION lib/cmake/sandlot_client)
 install(DIRECTORY clients/javascript/ DESTINATION share/sandlot/javascript)
 sandlot_robios_install()
 install(FILES LICENSE DESTINATION share/sandlot)
-install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot)
+install(DIRECTORY docs/ examples DESTINATION share/doc/sandlot PATTERN "__pycache__" EXCLUDE)
 
 # Users' inline copies of our functions must give the same bits as ours.
 set(flags -ffp-contract=off)
