@@ -6,7 +6,9 @@
 namespace sandlot::test {
 namespace {
 
-std::string word(int number) { return "packet " + std::to_string(number) + std::string(number % 40, '!'); }
+std::string word(int number) {
+  return "packet " + std::to_string(number) + std::string(static_cast<std::size_t>(number % 40), '!');
+}
 
 void send_word(Radios& world, int from, int to) {
   for (int i = from; i < to; ++i) {
