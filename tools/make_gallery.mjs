@@ -9,12 +9,12 @@ import { Viewer } from "../tests/js/viewer.mjs";
 import { saveScreenshot } from "./indexed_png.mjs";
 
 const size = { width: 1120, height: 680 };
-/** When to look [s of the scenario], at what (else at everything), and from how near. */
+/** When to look [s of the scenario], at what (else at everything), from how near, and what is open below the scene. */
 const moments = {
   ball: { time_s: 4 }, beach: { time_s: 12 }, charging: { time_s: 20 }, clearing: { time_s: 15 }, clutter: { time_s: 10 },
   creatures: { time_s: 12 }, errors: { time_s: 10 }, football: { time_s: 12 }, foraging: { time_s: 25 }, formation: { time_s: 6 },
-  gripping: { time_s: 5 }, indoor: { time_s: 12 }, joint_step: { time_s: 2.1 }, mario: { time_s: 6, at: "mario" },
-  mario_drive: { time_s: 10, at: "mario" }, mario_step: { time_s: 1, at: "mario" }, match: { time_s: 30 }, materials: { time_s: 3.2 },
+  gripping: { time_s: 5 }, indoor: { time_s: 12 }, joint_step: { time_s: 2.1 }, mario: { time_s: 6 },
+  mario_drive: { time_s: 10, at: "mario" }, mario_step: { time_s: 1, at: "mario" }, match: { time_s: 30, below: "match" }, materials: { time_s: 3.2 },
   motor_ramp: { time_s: 3 }, office_goals: { time_s: 12 }, office_localise: { time_s: 10 }, pile: { time_s: 4 },
   predator_prey: { time_s: 8 }, primitives: { time_s: 1.5 }, soccer_attack: { time_s: 6 }, soccer_game: { time_s: 15 },
   transport: { time_s: 10 }, vineyard_loop: { time_s: 3 }, vineyard_rows: { time_s: 12 }, wheels: { time_s: 17 }, yard: { time_s: 20 },
@@ -46,7 +46,7 @@ const browser = await chromium.launch({ executablePath: process.env.SANDLOT_CHRO
     "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
 
 async function take(name) {
-  const { time_s = usual_s, at, nearer = 1 } = moments[name] ?? {};
+  const { time_s = usual_s, at, nearer = 1, below } = moments[name] ?? {};
   const scratch = new Scratch();
   const served = await Served.start(["run", `scenarios/${name}.yaml`, "--command", `at ${time_s} s pause`], scratch);
   const viewer = new Viewer(served.ws, "foxglove.websocket.v1");
@@ -54,6 +54,10 @@ async function take(name) {
     let status;
     await viewer.subscribe("/sandlot/status", (s) => { status = s; });
     const page = await browser.newPage({ viewport: size, colorScheme: "light" });
+    await page.addInitScript((below) => {
+      localStorage.setItem("sandlot.frame.folded", JSON.stringify({ dock: !below }));
+      if (below) localStorage.setItem("sandlot.dock.tab", JSON.stringify(below));
+    }, below);
     await page.goto(served.url);
     await until(`${name} at ${time_s} s`, () => status?.time_s >= time_s - 0.011, 300);
     await page.evaluate(([at, nearer]) => {
