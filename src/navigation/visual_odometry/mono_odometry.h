@@ -29,38 +29,29 @@
 ///            estimation (2011). Scale: as in libviso2, A. Geiger et al. (2011); votes by relative height are ours.
 #include "base/node.h"
 #include "base/random.h"
+#include "navigation/visual_odometry/keys.h"
 #include "navigation/visual_odometry/matching.h"
-#include "navigation/visual_odometry/track.h"
 
 namespace sandlot::navigation::vo {
 
-struct MonoCamera {
-  double fx_px = 350, fy_px = 350, cx_px = 319.5, cy_px = 239.5;
+struct MonoCamera : PinholeKeys {
   double height_m = 0.5, pitch_rad = 0.2;
 
   static void fields(auto& s, auto&& visit) {
-    visit(Field{"fx", "px", "Focal length along u: P[0] of CameraInfo.", 1, 1e5}, s.fx_px);
-    visit(Field{"fy", "px", "Focal length along v: P[5] of CameraInfo.", 1, 1e5}, s.fy_px);
-    visit(Field{"cx", "px", "Column of the optical axis: P[2] of CameraInfo.", -1e5, 1e5}, s.cx_px);
-    visit(Field{"cy", "px", "Row of the optical axis: P[6] of CameraInfo.", -1e5, 1e5}, s.cy_px);
+    PinholeKeys::fields(s, visit);
     visit(Field{"height", "m", "Height above the ground.", 1e-3, 1e4}, s.height_m);
     visit(Field{"pitch", "rad", "Angle of the optical axis below the horizon.", -1.5, 1.5707963267948966},
           s.pitch_rad);
   }
 };
 
-struct MonoSpec {
+struct MonoSpec : KeyframeKeys {
   MonoCamera camera;
   FeatureSpec features;
   MatchSpec matching;
   int ransac_iterations = 500;
   double inlier_px = 1, min_parallax_px = 2, least_noise_px = 0.05, common_error_px = 0.01;
   int min_inliers = 20, min_ground_points = 12;
-  double min_inlier_share = 0.35, max_position_deviation_m = 0.2;
-  double keyframe_motion_px = 15, keyframe_share = 0.6;
-  int patience = 2;
-  Growth growth;
-  std::uint64_t seed = 1;
 
   static void fields(auto& s, auto&& visit) {
     visit(Field{"camera", "", "Rectified camera."}, s.camera);
@@ -83,22 +74,7 @@ struct MonoSpec {
     visit(Field{"min_inliers", "1", "Least number of inliers.", 8, 100000}, s.min_inliers);
     visit(Field{"min_ground_points", "1", "Least number of points on the ground.", 3, 100000},
           s.min_ground_points);
-    visit(Field{"min_inlier_share", "1", "Least share of the matches that are inliers.", 0, 1},
-          s.min_inlier_share);
-    visit(Field{"max_position_deviation", "m",
-                "Standard deviation of a motion's translation above which it is uncertain.", 1e-6, 1e6},
-          s.max_position_deviation_m);
-    visit(Field{"keyframe_motion", "px", "Median flow after which an image becomes the keyframe.", 0, 1000},
-          s.keyframe_motion_px);
-    visit(Field{"keyframe_share", "1",
-                "Share of the keyframe's first inliers below which an image becomes the keyframe.", 0, 1},
-          s.keyframe_share);
-    visit(Field{"patience", "1", "Images in a row without a pose after which one becomes the keyframe.", 0,
-                1000},
-          s.patience);
-    visit(Field{"growth", "", "Errors that all points have in common, such as those of calibration."},
-          s.growth);
-    visit(Field{"seed", "1", "Seed of the random samples.", 0, 9007199254740992.0}, s.seed);
+    KeyframeKeys::fields(s, visit);
   }
   /// keyframe_motion lies within the matching's radius.
   Status check(const Node& node, const std::string& path) const;
